@@ -1,0 +1,39 @@
+// Random numbers without state: each is a hash of where it is used.
+#pragma once
+
+#include <cstdint>
+
+namespace fretwork {
+
+/// Names the use of a random number, so that two stages never share a sequence.
+enum class RandomStream : std::uint32_t {
+    kSynthesisInit = 1,
+    kSynthesisJitter,
+    kSynthesisCandidates,
+    kSamples,
+    kPattern,
+    kTest,
+};
+
+/// The same five numbers give the same 64 random bits on every machine and in any order of calls,
+/// which is why results cannot depend on the number of threads.
+///
+/// \param seed    the user's seed
+/// \param stream  who asks
+/// \param epoch   level and pass, or any other coarse counter
+/// \param item    voxel, sample or pixel
+/// \param draw    how many numbers this item has drawn before
+[[nodiscard]] std::uint64_t counter_random(std::uint64_t seed, RandomStream stream, std::uint32_t epoch,
+                                           std::uint64_t item, std::uint32_t draw);
+
+/// Uniform in [0, 1).
+[[nodiscard]] inline double unit_interval(std::uint64_t bits) {
+    return static_cast<double>(bits >> 11) * 0x1.0p-53;
+}
+
+/// Uniform in [0, n) up to a bias below n / 2^32. Requires n > 0.
+[[nodiscard]] inline std::uint32_t index_below(std::uint64_t bits, std::uint32_t n) {
+    return static_cast<std::uint32_t>(((bits >> 32) * n) >> 32);
+}
+
+}  // namespace fretwork

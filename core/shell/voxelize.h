@@ -1,0 +1,41 @@
+// Stage 1: triangle mesh -> one-voxel-thick shell.
+#pragma once
+
+#include "core/base/run_control.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/shell/surface_voxels.h"
+
+namespace fretwork {
+
+struct VoxelizeSettings {
+    /// Voxels along the longest side of the mesh's bounding box. Range [4, 2048].
+    /// The paper uses 256, and 512 for models with fine detail.
+    int resolution = 256;
+};
+
+/// Selects every voxel of a regular grid that the surface passes through.
+///
+/// VOXELIZE in \cite dumas2015sound, section 3. A voxel is selected when its closed cube meets at
+/// least one triangle, decided by the separating-axis test of \cite akenine2001triangle. A connected
+/// surface gives a shell that is connected over `adjacency`.
+///
+/// Sheets  the triangles that meet a cell fall into groups joined by edges that pass through the
+///         cell; each group is an entry of its own.
+/// Links   two entries in touching cells are adjacent when they share a triangle, or when both are
+///         adjacent to a common entry that touches both and their normals do not oppose.
+/// Units   millimetres in; integer voxel coordinates out. The result carries the grid that maps
+///         between the two, so later stages never ask for the voxel size again.
+/// Normals area-weighted mean over the surface inside the voxel, unit length. Where the patches
+///         cancel (a wall thinner than one voxel, joined at its rim) the largest patch decides.
+/// Order   see SurfaceVoxels. Coordinates do not depend on the order of the triangles.
+/// Cost    time grows with the voxels inside the triangles' bounding boxes; memory with the result.
+///
+/// \param mesh  needs neither to be closed nor manifold; vertices are told apart by index (weld
+///              soups first, `core/mesh/repair.h`). Triangles of zero area add no normal.
+/// \throws InvalidInput    no triangle; an index past the end; a coordinate that is not finite; a
+///                         surface of zero extent.
+/// \throws InvalidSetting  `resolution` out of range.
+/// \throws Cancelled       `run` asked to stop.
+SurfaceVoxels voxelize(const TriangleMesh& mesh, const VoxelizeSettings& settings = {}, const RunControl& run = {});
+
+}  // namespace fretwork
