@@ -152,7 +152,7 @@ Exemplar make_exemplar(const Image& picture, const Image* mask, const ExemplarSe
     check_both_phases(exemplar);
 
     exemplar.tileable = settings.tileable.value_or(
-        wrap_step_ratio(exemplar.color, level, exemplar.width, exemplar.height) <= kTileableStepRatio);
+        is_tileable(measure_wrap_step(exemplar.color, exemplar.solid, exemplar.width, exemplar.height)));
     exemplar.feature_distance_px = signed_distance_px(level, exemplar.width, exemplar.height, exemplar.tileable);
     return exemplar;
 }

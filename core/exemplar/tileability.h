@@ -1,19 +1,26 @@
 // Whether a picture continues across its own borders.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "core/exemplar/image.h"
 
 namespace fretwork {
 
-/// The step from the last column to the first one over the mean step between neighbouring columns
-/// inside, and the same for rows; the larger of the two. Measured on colour and on `level` (positive
-/// in solid, clamped to [-1/2, 1/2]) and again the larger taken. About 1 for a picture that tiles.
-[[nodiscard]] double wrap_step_ratio(std::span<const Rgb8> color, std::span<const float> level, int width, int height);
+/// The step across the wrap-around border (last column to first, last row to first; mean absolute
+/// difference over the line) compared with the steps between neighbouring lines inside. Each is the
+/// worst of both axes, on colour and on the mask.
+struct WrapStep {
+    double to_mean = 0;     ///< over the mean interior step: about 1 where the picture tiles
+    double to_largest = 0;  ///< over the largest interior step: at most about 1 where it tiles
+};
 
-/// The ratio up to which a picture counts as tileable. Pictures drawn to tile measure about 1, crops
-/// of a larger picture above 2.
-inline constexpr double kTileableStepRatio = 1.6;
+[[nodiscard]] WrapStep measure_wrap_step(std::span<const Rgb8> color, std::span<const std::uint8_t> solid, int width,
+                                         int height);
+
+/// A picture tiles if its wrap-around step is an ordinary one: near the mean, or, up to twice the
+/// mean, no larger than the largest inside (a drawing may have an edge along its border by chance).
+[[nodiscard]] bool is_tileable(const WrapStep& step);
 
 }  // namespace fretwork
