@@ -1,0 +1,105 @@
+#include "formats/mesh_file.h"
+
+#include <array>
+#include <cctype>
+#include <utility>
+
+#include "core/base/error.h"
+#include "formats/atomic_write.h"
+#include "formats/obj_reader.h"
+#include "formats/obj_writer.h"
+#include "formats/off_reader.h"
+#include "formats/off_writer.h"
+#include "formats/parse_error.h"
+#include "formats/ply_reader.h"
+#include "formats/ply_writer.h"
+#include "formats/read_file.h"
+#include "formats/stl_reader.h"
+#include "formats/stl_writer.h"
+
+namespace fretwork {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, MeshFormat>, 5> kFormats = {{
+    {"stl", MeshFormat::kStl},
+    {"obj", MeshFormat::kObj},
+    {"ply", MeshFormat::kPly},
+    {"off", MeshFormat::kOff},
+    {"3mf", MeshFormat::kThreemf},
+}};
+
+}  // namespace
+
+MeshFormat mesh_format_from_name(std::string_view name) {
+    std::string lower(name.substr(name.starts_with('.') ? 1 : 0));
+    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::string known;
+    for (const auto& [word, format] : kFormats) {
+        if (word == lower) return format;
+        known.append(known.empty() ? "" : ", ").append(word);
+    }
+    throw InvalidSetting("mesh format: found " + quoted(name) + ", expected one of " + known);
+}
+
+MeshFormat mesh_format_from_path(const std::filesystem::path& path) {
+    try {
+        return mesh_format_from_name(path.extension().string());
+    } catch (const InvalidSetting& unknown) {
+        throw InvalidSetting(path.string() + ": " + unknown.what());
+    }
+}
+
+MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view source, LengthUnit unit,
+                   const RunControl& run) {
+    MeshFile file;
+    switch (format) {
+        case MeshFormat::kStl:
+            file = read_stl(bytes, source, run);
+            break;
+        case MeshFormat::kObj:
+            file = read_obj(bytes, source, run);
+            break;
+        case MeshFormat::kPly:
+            file = read_ply(bytes, source, run);
+            break;
+        case MeshFormat::kOff:
+            file = read_off(bytes, source, run);
+            break;
+        case MeshFormat::kThreemf:
+            throw InvalidInput(std::string(source) + ": 3MF cannot be read");
+    }
+    if (file.mesh.triangles.empty())
+        fail_parse(source, place_of_byte(bytes.size()), "no triangle in the whole file", "at least one");
+    if (format != MeshFormat::kThreemf && unit != LengthUnit::kMillimeter) {
+        file.unit = unit;
+        for (Vec3& p : file.mesh.positions_mm) p *= millimeters_per(unit);
+    }
+    return file;
+}
+
+MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options, const RunControl& run) {
+    const MeshFormat format = options.format ? *options.format : mesh_format_from_path(path);
+    return read_mesh(read_file(path), format, path.string(), options.unit, run);
+}
+
+std::string write_mesh(const MeshToWrite& input, MeshFormat format) {
+    switch (format) {
+        case MeshFormat::kStl:
+            return write_stl(input);
+        case MeshFormat::kObj:
+            return write_obj(input);
+        case MeshFormat::kPly:
+            return write_ply(input);
+        case MeshFormat::kOff:
+            return write_off(input);
+        case MeshFormat::kThreemf:
+            break;
+    }
+    throw InvalidInput("3MF cannot be written");
+}
+
+void write_mesh(const std::filesystem::path& path, const MeshToWrite& input, std::optional<MeshFormat> format) {
+    atomic_write(path, write_mesh(input, format ? *format : mesh_format_from_path(path)));
+}
+
+}  // namespace fretwork

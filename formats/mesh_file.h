@@ -1,0 +1,48 @@
+// Mesh files of any readable format, by extension or by name of the format.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/run_control.h"
+#include "formats/mesh_data.h"
+#include "formats/mesh_writer_input.h"
+
+namespace fretwork {
+
+enum class MeshFormat { kStl, kObj, kPly, kOff, kThreemf };
+
+/// "stl", "obj", "ply", "off", "3mf"; case and a leading dot do not matter.
+/// \throws InvalidSetting  naming the known ones.
+MeshFormat mesh_format_from_name(std::string_view name);
+
+/// \throws InvalidSetting  no or an unknown extension.
+MeshFormat mesh_format_from_path(const std::filesystem::path& path);
+
+struct MeshReadOptions {
+    std::optional<MeshFormat> format;           ///< empty: from the extension
+    LengthUnit unit = LengthUnit::kMillimeter;  ///< of formats that name none (all but 3MF)
+};
+
+/// Limits: files up to 4 GiB, coordinates up to 1e9 in size.
+/// \throws InvalidInput    naming file, place, found and expected; also for a file without triangles.
+/// \throws InvalidSetting  unknown extension and no format given.
+/// \throws FileError       cannot be opened.
+MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {}, const RunControl& run = {});
+
+/// The same from memory. \param source  name for messages, such as "standard input"
+MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view source,
+                   LengthUnit unit = LengthUnit::kMillimeter, const RunControl& run = {});
+
+/// The bytes of the file; the same input always gives the same bytes.
+/// \throws InvalidInput  see check_mesh_to_write.
+std::string write_mesh(const MeshToWrite& input, MeshFormat format);
+
+/// Whole or not at all (`atomic_write.h`). \throws FileError, InvalidInput
+void write_mesh(const std::filesystem::path& path, const MeshToWrite& input,
+                std::optional<MeshFormat> format = std::nullopt);
+
+}  // namespace fretwork
