@@ -70,8 +70,9 @@ class SurfaceTree {
     /// summed as dipoles (Barill et al. 2018) with an error below about 0.01.
     [[nodiscard]] double winding_number(const Vec3& point_mm) const;
 
-    /// winding_number above one half.
-    [[nodiscard]] bool inside(const Vec3& point_mm) const { return winding_number(point_mm) > 0.5; }
+    /// Whether the winding number is above one half. For a closed surface by counting the crossings of a ray, which is
+    /// exact and faster.
+    [[nodiscard]] bool inside(const Vec3& point_mm) const;
 
     /// Distance to the surface, negative where `inside`.
     [[nodiscard]] double signed_distance_mm(const Vec3& point_mm) const;
