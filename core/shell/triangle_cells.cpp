@@ -1,0 +1,253 @@
+#include "core/shell/triangle_cells.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fretwork {
+namespace {
+
+// Cells are cut out of a triangle a little larger than they are, so that no cell is missed by rounding;
+// the separating-axis test has the last word on those that are touched only by the widened part.
+constexpr double kWiden = 1e-7;
+// A patch with its middle this far inside a cell needs no further test.
+constexpr double kClearlyInside = 1e-6;
+
+// A triangle cut by the six planes of a cube has at most nine corners.
+struct Polygon {
+    int size = 0;
+    std::array<std::array<double, 3>, 10> corner;
+};
+
+using Point = std::array<double, 3>;
+
+Point point_at(const Point& a, const Point& b, int axis, double at) {
+    const double t = (at - a[static_cast<std::size_t>(axis)]) /
+                     (b[static_cast<std::size_t>(axis)] - a[static_cast<std::size_t>(axis)]);
+    Point p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = a[k] + t * (b[k] - a[k]);
+    p[static_cast<std::size_t>(axis)] = at;
+    return p;
+}
+
+// Sutherland-Hodgman against one plane. `sign` +1 keeps what lies below `at`, -1 what lies above.
+void cut_by_plane(const Polygon& in, int axis, double at, double sign, Polygon& out) {
+    const auto a = static_cast<std::size_t>(axis);
+    out.size = 0;
+    for (int i = 0; i < in.size; ++i) {
+        const Point& p = in.corner[static_cast<std::size_t>(i)];
+        const Point& q = in.corner[static_cast<std::size_t>(i + 1 == in.size ? 0 : i + 1)];
+        const bool keeps_p = sign * (p[a] - at) <= 0.0;
+        const bool keeps_q = sign * (q[a] - at) <= 0.0;
+        if (keeps_p) out.corner[static_cast<std::size_t>(out.size++)] = p;
+        if (keeps_p != keeps_q) out.corner[static_cast<std::size_t>(out.size++)] = point_at(p, q, axis, at);
+    }
+}
+
+struct Range {
+    double low;
+    double high;
+};
+
+Range range_along(const Polygon& polygon, int axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    Range range = {polygon.corner[0][a], polygon.corner[0][a]};
+    for (int i = 1; i < polygon.size; ++i) {
+        const double x = polygon.corner[static_cast<std::size_t>(i)][a];
+        range.low = std::min(range.low, x);
+        range.high = std::max(range.high, x);
+    }
+    return range;
+}
+
+// Room for the two steps of cutting one layer out of a polygon.
+struct LayerCut {
+    Polygon below;
+    Polygon between;
+};
+
+// The part of `in` between the planes of layer `cell`, widened; `in` itself where nothing is cut off.
+const Polygon& cut_to_layer(const Polygon& in, const Range& range, int axis, int cell, LayerCut& cut) {
+    const double low = cell - kWiden;
+    const double high = cell + 1 + kWiden;
+    const Polygon* part = &in;
+    if (range.high > high) {
+        cut_by_plane(*part, axis, high, 1.0, cut.below);
+        part = &cut.below;
+    }
+    if (range.low < low) {
+        cut_by_plane(*part, axis, low, -1.0, cut.between);
+        part = &cut.between;
+    }
+    return *part;
+}
+
+int first_layer(const Range& range, int lowest) {
+    return std::max(lowest, static_cast<int>(std::floor(range.low - kWiden)));
+}
+
+int past_last_layer(const Range& range, int highest) {
+    return std::min(highest, static_cast<int>(std::floor(range.high + kWiden)) + 1);
+}
+
+Vec3 as_vector(const Point& p) {
+    return {p[0], p[1], p[2]};
+}
+
+double polygon_area(const Polygon& polygon, const Vec3& normal) {
+    const Vec3 origin = as_vector(polygon.corner[0]);
+    Vec3 twice = Vec3::Zero();
+    for (int i = 2; i < polygon.size; ++i)
+        twice += (as_vector(polygon.corner[static_cast<std::size_t>(i - 1)]) - origin)
+                     .cross(as_vector(polygon.corner[static_cast<std::size_t>(i)]) - origin);
+    return std::max(0.0, 0.5 * twice.dot(normal));
+}
+
+// Point of a convex polygon closest to the origin of its coordinates.
+Vec3 closest_to_origin(const Polygon& polygon, const Vec3& center, const Vec3& normal) {
+    const Vec3 foot = normal * normal.dot(as_vector(polygon.corner[0]) - center);
+    const bool has_normal = normal != Vec3::Zero();
+    bool inside = has_normal;
+    Vec3 best = as_vector(polygon.corner[0]) - center;
+    double best_squared = best.squaredNorm();
+    for (int i = 0; i < polygon.size; ++i) {
+        const Vec3 a = as_vector(polygon.corner[static_cast<std::size_t>(i)]) - center;
+        const Vec3 b = as_vector(polygon.corner[static_cast<std::size_t>(i + 1 == polygon.size ? 0 : i + 1)]) - center;
+        const Vec3 ab = b - a;
+        if (has_normal && normal.dot(ab.cross(foot - a)) >= 0.0) continue;  // the foot is on the inner side
+        inside = false;
+        const double squared_length = ab.squaredNorm();
+        const double t = squared_length > 0.0 ? std::clamp(-a.dot(ab) / squared_length, 0.0, 1.0) : 0.0;
+        const Vec3 p = a + t * ab;
+        if (p.squaredNorm() < best_squared) {
+            best = p;
+            best_squared = p.squaredNorm();
+        }
+    }
+    return inside ? foot : best;
+}
+
+// Both cells beside a face list a patch that lies in the face, and each takes half of its area.
+double share_of_area(const Polygon& polygon, const VoxelCoord& cell) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const Range range = range_along(polygon, axis);
+        const double low = cell[static_cast<std::size_t>(axis)];
+        if (range.high - low <= kWiden || low + 1.0 - range.low <= kWiden) return 0.5;
+    }
+    return 1.0;
+}
+
+class TriangleCutter {
+  public:
+    TriangleCutter(const Corners& triangle, std::uint32_t index, int extent_x, std::vector<Patch>& patches)
+        : triangle_(triangle),
+          normal_(triangle_normal(triangle)),
+          index_(index),
+          extent_x_(extent_x),
+          patches_(patches) {}
+
+    void add_if_met(const Polygon& part, const VoxelCoord& cell) {
+        if (part.size == 0) return;
+        const Vec3 center(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5);
+        Vec3 middle = Vec3::Zero();
+        for (int i = 0; i < part.size; ++i) middle += as_vector(part.corner[static_cast<std::size_t>(i)]);
+        middle = middle / part.size - center;
+        const bool clearly = middle.cwiseAbs().maxCoeff() < 0.5 - kClearlyInside;
+        if (!clearly && !triangle_meets_cell(triangle_, center)) return;
+        double area = polygon_area(part, normal_);
+        if (!clearly) area *= share_of_area(part, cell);
+        patches_.push_back({static_cast<std::uint32_t>(cell[2]),
+                            static_cast<std::uint32_t>(cell[1] * extent_x_ + cell[0]), index_, static_cast<float>(area),
+                            closest_to_origin(part, center, normal_).cast<float>()});
+    }
+
+  private:
+    const Corners& triangle_;
+    Vec3 normal_;
+    std::uint32_t index_;
+    int extent_x_;
+    std::vector<Patch>& patches_;
+};
+
+}  // namespace
+
+Vec3 triangle_normal(const Corners& triangle) {
+    const Vec3 n = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    const double length = n.norm();
+    return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
+}
+
+bool segment_meets_cell(const Vec3& a, const Vec3& b, const Vec3& center) {
+    constexpr double half = 0.5 + kTouchVoxels;
+    const Vec3 middle = 0.5 * (a + b) - center;
+    const Vec3 reach = 0.5 * (b - a);
+    for (int k = 0; k < 3; ++k)
+        if (std::abs(middle[k]) > half + std::abs(reach[k])) return false;
+    for (int k = 0; k < 3; ++k) {
+        const int i = (k + 1) % 3;
+        const int j = (k + 2) % 3;
+        const double distance = std::abs(middle[i] * reach[j] - middle[j] * reach[i]);
+        if (distance > half * (std::abs(reach[i]) + std::abs(reach[j]))) return false;
+    }
+    return true;
+}
+
+bool triangle_meets_cell(const Corners& triangle, const Vec3& center) {
+    constexpr double half = 0.5 + kTouchVoxels;
+    const Corners v = {triangle[0] - center, triangle[1] - center, triangle[2] - center};
+    for (int k = 0; k < 3; ++k) {
+        if (std::min({v[0][k], v[1][k], v[2][k]}) > half) return false;
+        if (std::max({v[0][k], v[1][k], v[2][k]}) < -half) return false;
+    }
+
+    const Corners edge = {v[1] - v[0], v[2] - v[1], v[0] - v[2]};
+    for (std::size_t e = 0; e < 3; ++e) {
+        // Along edge x axis the two ends of the edge fall on one value; the third corner gives the other.
+        const Vec3& on = v[e];
+        const Vec3& off = v[(e + 2) % 3];
+        for (int k = 0; k < 3; ++k) {
+            const int i = (k + 1) % 3;
+            const int j = (k + 2) % 3;
+            const double p = on[i] * edge[e][j] - on[j] * edge[e][i];
+            const double q = off[i] * edge[e][j] - off[j] * edge[e][i];
+            const double radius = half * (std::abs(edge[e][i]) + std::abs(edge[e][j]));
+            if (std::min(p, q) > radius || std::max(p, q) < -radius) return false;
+        }
+    }
+
+    // The normal of a needle is mostly rounding. The slack is a bound of that rounding, so that for needles
+    // this axis gives way to the others, which stay accurate.
+    const Vec3 normal = edge[0].cross(edge[1]);
+    const double slack =
+        16.0 * std::numeric_limits<double>::epsilon() * edge[0].lpNorm<1>() * edge[1].lpNorm<1>() * v[0].lpNorm<1>();
+    return std::abs(normal.dot(v[0])) <= half * normal.lpNorm<1>() + slack;
+}
+
+void cut_triangle(const Corners& triangle, std::uint32_t index, const VoxelCoord& extent, int z_begin, int z_end,
+                  std::vector<Patch>& patches, const RunControl& run) {
+    TriangleCutter cutter(triangle, index, extent[0], patches);
+    Polygon whole;
+    whole.size = 3;
+    for (std::size_t c = 0; c < 3; ++c) whole.corner[c] = {triangle[c][0], triangle[c][1], triangle[c][2]};
+
+    LayerCut z_cut;
+    LayerCut y_cut;
+    LayerCut x_cut;
+    const Range z_range = range_along(whole, 2);
+    for (int z = first_layer(z_range, z_begin); z < past_last_layer(z_range, z_end); ++z) {
+        const Polygon& layer = cut_to_layer(whole, z_range, 2, z, z_cut);
+        if (layer.size == 0) continue;
+        const Range y_range = range_along(layer, 1);
+        for (int y = first_layer(y_range, 0); y < past_last_layer(y_range, extent[1]); ++y) {
+            run.throw_if_stopped();
+            const Polygon& row = cut_to_layer(layer, y_range, 1, y, y_cut);
+            if (row.size == 0) continue;
+            const Range x_range = range_along(row, 0);
+            for (int x = first_layer(x_range, 0); x < past_last_layer(x_range, extent[0]); ++x)
+                cutter.add_if_met(cut_to_layer(row, x_range, 0, x, x_cut), {x, y, z});
+        }
+    }
+}
+
+}  // namespace fretwork

@@ -1,0 +1,95 @@
+#include "core/shell/voxelize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/shell/cut_mesh.h"
+#include "core/shell/links.h"
+#include "core/shell/shell_entries.h"
+
+namespace fretwork {
+namespace {
+
+constexpr int kMinResolution = 4;
+constexpr int kMaxResolution = 2048;
+
+void check_settings(const VoxelizeSettings& settings) {
+    if (settings.resolution < kMinResolution || settings.resolution > kMaxResolution)
+        throw InvalidSetting("voxelize: resolution is " + std::to_string(settings.resolution) + ", expected " +
+                             std::to_string(kMinResolution) + " to " + std::to_string(kMaxResolution));
+}
+
+void check_mesh(const TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) throw InvalidInput("voxelize: the mesh has no triangle, expected at least one");
+    for (std::size_t p = 0; p < mesh.positions_mm.size(); ++p)
+        if (!mesh.positions_mm[p].allFinite())
+            throw InvalidInput("voxelize: vertex " + std::to_string(p) + " has a coordinate that is not finite");
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (const std::uint32_t corner : mesh.triangles[t])
+            if (corner >= mesh.positions_mm.size())
+                throw InvalidInput("voxelize: triangle " + std::to_string(t) + " names vertex " +
+                                   std::to_string(corner) + ", expected below " +
+                                   std::to_string(mesh.positions_mm.size()));
+}
+
+// `resolution` voxels along the longest side. Along every axis the box lies centred in one voxel more than
+// it measures, rounded: between a quarter and three quarters of a voxel stay free at each end, so that the
+// outer flat faces of a model run through the middle of a layer and not along the border of two.
+VoxelGrid make_grid(const TriangleMesh& mesh, int resolution) {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+    Vec3 high = -low;
+    for (const Triangle& t : mesh.triangles)
+        for (const std::uint32_t corner : t) {
+            low = low.cwiseMin(mesh.positions_mm[corner]);
+            high = high.cwiseMax(mesh.positions_mm[corner]);
+        }
+    const Vec3 size = high - low;
+    VoxelGrid grid;
+    grid.voxel_mm = size.maxCoeff() / resolution;
+    if (!std::isnormal(grid.voxel_mm) || !std::isnormal(1.0 / grid.voxel_mm))
+        throw InvalidInput("voxelize: the longest side of the mesh measures " + std::to_string(size.maxCoeff()) +
+                           " mm, expected a finite extent above zero");
+    for (int k = 0; k < 3; ++k) {
+        const int cells = static_cast<int>(std::lround(size[k] / grid.voxel_mm)) + 1;
+        grid.extent[static_cast<std::size_t>(k)] = cells;
+        grid.origin_mm[k] = 0.5 * (low[k] + high[k]) - 0.5 * cells * grid.voxel_mm;
+    }
+    return grid;
+}
+
+std::vector<Vec3> to_grid(const TriangleMesh& mesh, const VoxelGrid& grid) {
+    std::vector<Vec3> points(mesh.positions_mm.size());
+    parallel_for(points.size(), 8192,
+                 [&](std::size_t p) { points[p] = (mesh.positions_mm[p] - grid.origin_mm) / grid.voxel_mm; });
+    return points;
+}
+
+}  // namespace
+
+SurfaceVoxels voxelize(const TriangleMesh& mesh, const VoxelizeSettings& settings, const RunControl& run) {
+    check_settings(settings);
+    check_mesh(mesh);
+    run.checkpoint("voxelize", 0.0);
+
+    SurfaceVoxels shell;
+    shell.grid = make_grid(mesh, settings.resolution);
+    const std::vector<Vec3> grid_points = to_grid(mesh, shell.grid);
+    run.checkpoint("voxelize", 0.05);
+    LayeredPatches patches = cut_mesh(mesh.triangles, grid_points, shell.grid.extent, run);
+    run.checkpoint("voxelize", 0.4);
+    const EntryTriangles triangles = make_entries(mesh.triangles, grid_points, patches, shell, run);
+    patches = {};
+    run.checkpoint("voxelize", 0.7);
+    const Adjacency direct = link_shared_triangles(shell.grid, shell.coords, triangles, run);
+    run.checkpoint("voxelize", 0.85);
+    shell.adjacency = link_around_common_neighbors(shell.grid, shell.coords, shell.normals, direct, run);
+    shell.components = components_by_lowest_triangle(shell.adjacency, triangles);
+    run.checkpoint("voxelize", 1.0);
+    return shell;
+}
+
+}  // namespace fretwork
