@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,7 +30,7 @@ struct ReinforceSettings {
     double stress_ratio = 10.0;          ///< stop when max <= ratio x median frozen after connecting
     double material_budget = 0.15;       ///< voxels that may be added after connecting, share of the shell's
     int batch = 8;                       ///< bridges between two factorisations
-    int max_iterations = 30;
+    int max_iterations = 30;             ///< turns at most; the last one only connects
     std::uint64_t seed = 1;
 };
 
@@ -55,22 +56,37 @@ struct ReinforceRecord {
 struct ReinforceStep {
     std::vector<VoxelIndex> forced_solid;  ///< newly forced, ascending
     std::vector<VoxelIndex> dropped;       ///< solid voxels of specks too small to print, ascending
+    /// Nothing is left that asks for resynthesis. What `forced_solid` and `dropped` still hold (voxels
+    /// at contacts, bridges of the last iteration) is to be applied as it is; the result is in one firm
+    /// piece per component of the input (`pattern_pieces.h`).
     bool done = false;
     ReinforceRecord record;
 };
 
-/// STRUCTURALOPTIM. Keeps what does not change between turns (G_surface, orderings of the solver, the
-/// frozen median, the budget spent). References must outlive it.
+/// STRUCTURALOPTIM. Keeps what does not change between turns (G_surface, its components and firm
+/// links, all voxels forced so far, the frozen median, the budget spent). References must outlive it.
+///
+/// Ends  voxels once forced are solid for ever, whatever the caller passes; the turn number
+///       `max_iterations` only connects and is always the last. Every turn, painted without
+///       resynthesis, leaves one piece per component of the input.
+/// Same in, same out for any number of threads.
 class StructuralOptimizer {
   public:
+    /// \param keep  one byte per voxel, nonzero for voxels whose solid state the user asked for: they are
+    ///              never dropped as specks. May be empty.
     /// \throws InvalidSetting  a setting outside its range.
+    /// \throws InvalidInput    an empty shell, `keep` of another length, a voxel of the profile past
+    ///                         the end, a profile without a case.
     StructuralOptimizer(const SurfaceVoxels& shell, const ForceProfile& profile, const Material& material,
-                        const ReinforceSettings& settings);
+                        const ReinforceSettings& settings, std::vector<std::uint8_t> keep = {});
     ~StructuralOptimizer();
     StructuralOptimizer(StructuralOptimizer&&) noexcept;
     StructuralOptimizer& operator=(StructuralOptimizer&&) noexcept;
 
-    /// One turn. `done` is true exactly when nothing is left to force.
+    /// One turn.
+    /// \throws InvalidInput   `solid` is not as long as the shell.
+    /// \throws SolverFailure  the finite elements could not be solved.
+    /// \throws Cancelled      `run` asked to stop; the optimizer is as it was before the call.
     ReinforceStep step(const SolidStates& solid, const RunControl& run = {});
 
   private:

@@ -1,0 +1,92 @@
+#include "core/reinforce/connect_pieces.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "core/graph/disjoint_sets.h"
+#include "core/graph/shortest_path_forest.h"
+#include "core/graph/tree_crossings.h"
+#include "core/reinforce/repair_contacts.h"
+
+namespace fretwork {
+namespace {
+
+/// Shortest crossings over `graph` that join all pieces that can be joined: Kruskal's least spanning
+/// tree on the borders between the pieces' nearest regions, which hold the tree of all gaps.
+std::vector<std::vector<VoxelIndex>> spanning_gaps(const Adjacency& graph, const ShellComponents& pieces,
+                                                   const SolidStates& solid) {
+    ForestGrower grower(graph);
+    for (VoxelIndex v = 0; v < solid.size(); ++v)
+        if (solid[v] == SolidState::kSolid) grower.plant(v, pieces.of[v]);
+    grower.grow();
+    std::vector<TreeCrossing> gaps = shortest_crossings(graph, grower.forest(), solid, CrossingLinks::kAny);
+    std::ranges::sort(gaps, [](const TreeCrossing& x, const TreeCrossing& y) {
+        return std::tie(x.length, x.a, x.b) < std::tie(y.length, y.a, y.b);
+    });
+    DisjointSets joined(pieces.count());
+    std::vector<std::vector<VoxelIndex>> paths;
+    for (const TreeCrossing& gap : gaps)
+        if (joined.unite(gap.a, gap.b)) paths.push_back(path_over(grower.forest(), gap));
+    return paths;
+}
+
+void paint_exactly(const std::vector<VoxelIndex>& voxels, SolidStates& solid, std::vector<VoxelIndex>& painted) {
+    for (const VoxelIndex v : voxels) {
+        if (solid[v] == SolidState::kSolid) continue;
+        solid[v] = SolidState::kSolid;
+        painted.push_back(v);
+    }
+}
+
+}  // namespace
+
+ConnectedPieces connect_pieces(const SurfaceVoxels& shell, const Adjacency& firm, BridgePainter& painter,
+                               DilatedPart part, SolidStates& solid, const RunControl& run) {
+    ConnectedPieces result;
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        const ShellComponents pieces = connected_components(firm, solid, SolidState::kSolid);
+        run.throw_if_stopped();
+        // The second time every path follows firm links, so that its voxels alone make the connection.
+        const bool along_firm_links = attempt > 0;
+        const auto paths = spanning_gaps(along_firm_links ? firm : shell.adjacency, pieces, solid);
+        run.throw_if_stopped();
+        if (paths.empty()) break;
+        for (const std::vector<VoxelIndex>& path : paths) {
+            const bool contact = path.size() == 2;
+            if (contact) {
+                const auto filling = contact_filling(shell, firm, solid, path.front(), path.back());
+                if (filling) paint_exactly(*filling, solid, result.painted);
+            } else {
+                const std::vector<VoxelIndex> voxels = painter.paint(path, part, solid);
+                result.painted.insert(result.painted.end(), voxels.begin(), voxels.end());
+                paint_exactly(path, solid, result.painted);
+            }
+            ++(contact ? result.contacts : result.bridges);
+        }
+    }
+    std::ranges::sort(result.painted);
+    return result;
+}
+
+std::vector<VoxelIndex> seed_empty_components(const ShellComponents& shell_components, BridgePainter& painter,
+                                              double radius_voxels, SolidStates& solid) {
+    constexpr VoxelIndex kNone = kNoVoxel;
+    std::vector<VoxelIndex> lowest(shell_components.count(), kNone);
+    std::vector<std::uint8_t> has_solid(shell_components.count(), 0);
+    for (VoxelIndex v = 0; v < solid.size(); ++v) {
+        // Voxels are sorted by height first.
+        if (lowest[shell_components.of[v]] == kNone) lowest[shell_components.of[v]] = v;
+        if (solid[v] == SolidState::kSolid) has_solid[shell_components.of[v]] = 1;
+    }
+    std::vector<VoxelIndex> painted;
+    for (std::size_t c = 0; c < lowest.size(); ++c) {
+        if (has_solid[c] != 0) continue;
+        const std::vector<VoxelIndex> disc = painter.paint_disc(lowest[c], radius_voxels, solid);
+        painted.insert(painted.end(), disc.begin(), disc.end());
+    }
+    std::ranges::sort(painted);
+    return painted;
+}
+
+}  // namespace fretwork
