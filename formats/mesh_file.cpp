@@ -38,7 +38,7 @@ MeshFormat mesh_format_from_name(std::string_view name) {
         if (word == lower) return format;
         known.append(known.empty() ? "" : ", ").append(word);
     }
-    throw InvalidSetting("mesh format: found " + quoted(name) + ", expected one of " + known);
+    throw InvalidSetting("mesh format: found " + in_quotes(name) + ", expected one of " + known);
 }
 
 MeshFormat mesh_format_from_path(const std::filesystem::path& path) {

@@ -126,7 +126,7 @@ class ObjReader {
         if (materials_skipped_) file_.warnings.emplace_back("materials are not read from OBJ files");
         if (empty_faces_ > 0)
             file_.warnings.push_back(std::to_string(empty_faces_) + " faces with fewer than three different corners");
-        for (const std::string& word : skipped_) file_.warnings.push_back("OBJ statements skipped: " + quoted(word));
+        for (const std::string& word : skipped_) file_.warnings.push_back("OBJ statements skipped: " + in_quotes(word));
     }
 
     TextScanner scanner_;

@@ -10,7 +10,7 @@ void fail_parse(std::string_view source, std::string_view place, std::string_vie
     throw InvalidInput(message);
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     constexpr std::size_t kLongest = 40;
     constexpr std::string_view kHex = "0123456789abcdef";
     std::string out = "\"";

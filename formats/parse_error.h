@@ -12,7 +12,7 @@ namespace fretwork {
                              std::string_view expected);
 
 /// Text from a file made fit for a message: quoted, at most 40 bytes, unprintable ones as \xNN.
-[[nodiscard]] std::string quoted(std::string_view text);
+[[nodiscard]] std::string in_quotes(std::string_view text);
 
 /// "byte 84"
 [[nodiscard]] std::string place_of_byte(std::size_t offset);

@@ -124,7 +124,7 @@ class HeaderReader {
             if (needed > left + 1)
                 fail_parse(source_, place_of_byte(bytes_.size()), "the end of the file",
                            "at least " + std::to_string(needed) + " bytes for " + std::to_string(element.count) +
-                               " rows of element " + quoted(element.name));
+                               " rows of element " + in_quotes(element.name));
         }
     }
 

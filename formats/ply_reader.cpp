@@ -32,7 +32,7 @@ class AsciiNumbers {
     [[nodiscard]] std::size_t most_values_left(PlyType) const { return scanner_.bytes_left() / 2 + 1; }
     [[noreturn]] void fail(std::string_view expected) const {
         fail_parse(source_, place_of_line(first_line_ + scanner_.line() - 1),
-                   word_.empty() ? "the end of the file" : quoted(word_), expected);
+                   word_.empty() ? "the end of the file" : in_quotes(word_), expected);
     }
 
   private:

@@ -96,7 +96,7 @@ class AsciiReader {
 
     void expect(std::string_view keyword) {
         const std::string_view word = scanner_.word();
-        if (!same(word, keyword)) scanner_.fail(word, quoted(keyword));
+        if (!same(word, keyword)) scanner_.fail(word, in_quotes(keyword));
     }
 
     void read_solid(std::string name) {

@@ -134,7 +134,7 @@ std::int64_t TextScanner::to_integer(std::string_view word, std::string_view wha
 }
 
 void TextScanner::fail(std::string_view found_word, std::string_view expected) const {
-    const std::string found = !found_word.empty()   ? quoted(found_word)
+    const std::string found = !found_word.empty()   ? in_quotes(found_word)
                               : at_ >= text_.size() ? "the end of the file"
                                                     : "the end of the line";
     fail_parse(source_, place_of_line(line_), found, expected);
