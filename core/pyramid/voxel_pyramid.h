@@ -4,22 +4,26 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/bulk_vector.h"
 #include "core/base/run_control.h"
 #include "core/base/vec.h"
 #include "core/shell/surface_voxels.h"
 
 namespace fretwork {
 
-/// N(v): the voxels of the 5x5x5 cube around v that are reached over the surface without leaving the
-/// cube, v itself left out. Compressed rows like Adjacency.
+/// N(v): the voxels of the 5x5x5 cube around v that are reached from v in at most two steps over the
+/// adjacency, neither of which turns round to an opposing normal; v itself left out. w is in N(v) exactly
+/// when v is in N(w). Compressed rows like Adjacency, neighbours ascending.
+///
+/// Two links span the cube, so on smooth surfaces these are all its voxels on the sheet of v, 39 in the mean.
 struct Neighborhoods {
     std::vector<std::uint32_t> first;
-    std::vector<VoxelIndex> neighbor;
+    BulkVector<VoxelIndex> neighbor;
     /// The way from v to its neighbour laid flat into v's tangent plane: its length is kept, so that
     /// a crease between the two is unfolded. In voxels of the *finest* level.
-    std::vector<Vec3f> offset;
+    BulkVector<Vec3f> offset;
     /// Position in these arrays of the same pair seen from the other side (w -> v).
-    std::vector<std::uint32_t> reverse;
+    BulkVector<std::uint32_t> reverse;
 };
 
 struct PyramidLevel {

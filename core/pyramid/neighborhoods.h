@@ -1,0 +1,22 @@
+// Inside of the pyramid: the neighbourhoods N(v) of one level, and the ways to the neighbours laid flat.
+#pragma once
+
+#include "core/base/run_control.h"
+#include "core/pyramid/voxel_pyramid.h"
+
+namespace fretwork {
+
+/// A step between two entries whose normals have a cosine below this is not taken. Steps over a right-angled
+/// edge are, with room for skewed mean normals; steps from one side of a wall to the other are not.
+inline constexpr float kTurningRoundCosine = -0.2F;
+
+/// Needs coords, positions, normals and adjacency of `level`.
+///
+/// Offsets  where the two normals and those on the way between them are alike, w - v is turned into v's
+///          tangent plane and stretched from the chord to the arc. Else the way over the entry between v and w
+///          that bends least is unfolded step by step: each step is turned into the plane it starts from, and
+///          the second one carried back to v by the rotation that takes one normal to the other.
+/// Cost     linear in the pairs, about 39 per entry.
+Neighborhoods find_neighborhoods(const PyramidLevel& level, const RunControl& run);
+
+}  // namespace fretwork
