@@ -4,7 +4,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/graph/disjoint_sets.h"
+#include "core/base/disjoint_sets.h"
 #include "core/graph/shortest_path_forest.h"
 #include "core/graph/tree_crossings.h"
 #include "core/reinforce/repair_contacts.h"

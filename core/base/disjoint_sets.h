@@ -9,7 +9,8 @@
 
 namespace fretwork {
 
-/// A partition of 0 .. n - 1 that only grows coarser. Near constant time per call.
+/// A partition of 0 .. n - 1 that only grows coarser. Sets are named by their lowest member, so that names do not
+/// depend on the order of joins. Near constant time per call.
 class DisjointSets {
   public:
     explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
