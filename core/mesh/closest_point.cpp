@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/mesh/box_tree.h"
 #include "core/mesh/check_mesh.h"
+#include "core/mesh/edge_table.h"
 #include "core/mesh/triangle_math.h"
 #include "core/mesh/winding_tree.h"
 
@@ -35,20 +36,12 @@ std::vector<Box> boxes_of(const std::vector<Corners>& corners) {
     return boxes;
 }
 
-/// Every directed edge has as many partners the other way: then a ray counts the winding number exactly.
+/// Every edge is run as often one way as the other: then a ray counts the winding number exactly.
 bool bounds_a_volume(const TriangleMesh& mesh) {
-    std::vector<std::pair<std::uint64_t, int>> edges;
-    edges.reserve(3 * mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint64_t a = t[k], b = t[(k + 1) % 3];
-            if (a != b) edges.emplace_back((std::min(a, b) << 32) | std::max(a, b), a < b ? 1 : -1);
-        }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t i = 0; i < edges.size();) {
+    const EdgeTable edges(mesh);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
         int sum = 0;
-        const std::uint64_t edge = edges[i].first;
-        for (; i < edges.size() && edges[i].first == edge; ++i) sum += edges[i].second;
+        for (const HalfEdge h : edges.half_edges(e)) sum += runs_up(mesh, h) ? 1 : -1;
         if (sum != 0) return false;
     }
     return true;

@@ -59,6 +59,12 @@ inline Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, con
     return a + (vb / sum) * ab + (vc / sum) * ac;
 }
 
+/// No wider than 1e-12 of its length: what carries no direction and no area to speak of.
+inline bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    return !((b - a).cross(c - a).squaredNorm() > 1e-24 * longest2 * longest2);
+}
+
 /// How a segment meets a triangle, with the answer to "which side of this edge" shared by both triangles of the edge:
 /// exchanging the ends of an edge changes the sign of each number below and nothing else.
 struct TriangleCrossing {

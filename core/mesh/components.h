@@ -1,0 +1,33 @@
+// Connected pieces of a triangle mesh.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.h"
+
+namespace fretwork {
+
+enum class ConnectedBy {
+    kEdge,    ///< triangles that share an edge
+    kVertex,  ///< triangles that share a vertex
+};
+
+struct MeshComponents {
+    std::vector<std::uint32_t> of_triangle;  ///< component of each triangle, numbered by lowest triangle
+    std::uint32_t count = 0;
+};
+
+/// Vertices are told apart by index: weld a soup first. Cost linear.
+/// \throws InvalidInput  an index past the end.
+MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by = ConnectedBy::kEdge);
+
+struct MeshPart {
+    TriangleMesh mesh;
+    std::vector<std::uint32_t> source_triangles;  ///< triangle of the whole mesh, ascending
+};
+
+/// One mesh per component, with the vertices it uses, in their old order. A vertex that two components use is copied.
+std::vector<MeshPart> split_components(const TriangleMesh& mesh, const MeshComponents& components);
+
+}  // namespace fretwork
