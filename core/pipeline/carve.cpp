@@ -1,0 +1,216 @@
+#include "core/pipeline/carve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/enlarge/enlarge_features.h"
+#include "core/mesh/mesh_report.h"
+#include "core/pipeline/intended_use.h"
+#include "core/pipeline/keep_regions.h"
+#include "core/pipeline/memory_use.h"
+#include "core/pipeline/prepare_surface.h"
+#include "core/pipeline/resolve_settings.h"
+#include "core/pipeline/settings_schema.h"
+#include "core/pipeline/stage_plan.h"
+#include "core/pipeline/structure_loop.h"
+#include "core/pyramid/voxel_pyramid.h"
+#include "core/shell/voxelize.h"
+#include "core/solidify/pattern_field.h"
+#include "core/synthesis/synthesizer.h"
+
+namespace fretwork {
+namespace {
+
+// The flow, with the seconds that each stage takes on a bunny of 256 voxels. The loop of Algorithm 1
+// is one entry, because nobody knows how often it will turn.
+std::vector<PlannedStage> planned_stages() {
+    return {{"repair", 1.0},     {"voxelize", 1.0}, {"pyramid", 1.5},   {"synthesize", 4.0},
+            {"reinforce", 12.0}, {"enlarge", 3.0},  {"solidify", 25.0}, {"verify", 2.0}};
+}
+
+std::vector<SettingAssignment> resolved_document(const Settings& settings, const ResolvedSettings& resolved) {
+    Settings full = settings;
+    full.shell.thickness_mm = resolved.solidify.thickness_mm;
+    full.shell.voxel_mm = resolved.voxel_mm;
+    full.shell.resolution = resolved.voxelize.resolution;
+    full.exemplar.width_mm = resolved.exemplar_width_mm;
+    full.synthesis.levels = resolved.pyramid_levels;
+    full.structure.youngs_modulus_mpa = resolved.material.youngs_modulus_mpa;
+    full.structure.poissons_ratio = resolved.material.poissons_ratio;
+    full.structure.density_kg_m3 = resolved.material.density_kg_m3;
+    full.structure.strength_mpa = resolved.material.strength_z_mpa;
+    full.structure.profile = chosen_profile(settings);
+    full.structure.pattern_radius_mm = resolved.reinforce.pattern_radius_voxels * resolved.voxel_mm;
+    full.fabrication.min_feature_mm = resolved.enlarge.min_feature_mm;
+    full.fabrication.min_hole_mm = resolved.enlarge.min_hole_mm;
+    return document_from(full).assignments;
+}
+
+RunReport report_of_request(const CarveInput& input, const Settings& settings) {
+    RunReport report;
+    report.version = version();
+    report.input.model = input.model_name;
+    report.input.exemplar = input.exemplar_name;
+    report.seed = settings.synthesis.seed;
+    report.regions = document_from(settings).tables;
+    report.pattern.exemplar_solid_fraction = input.exemplar.solid_fraction();
+    return report;
+}
+
+void note_resolved(const Settings& settings, const ResolvedSettings& resolved, RunReport& report) {
+    report.settings = resolved_document(settings, resolved);
+    report.shell.resolution = resolved.voxelize.resolution;
+    report.shell.voxel_mm = resolved.voxel_mm;
+    report.shell.thickness_mm = resolved.solidify.thickness_mm;
+    report.pattern.exemplar_width_mm = resolved.exemplar_width_mm;
+    report.pattern.pixels_per_voxel = resolved.synthesis.pixels_per_voxel;
+    report.mesh.min_feature_mm = resolved.enlarge.min_feature_mm;
+    report.mesh.min_hole_mm = resolved.enlarge.min_hole_mm;
+    std::ranges::copy(resolved.warnings, std::back_inserter(report.warnings));
+}
+
+StructureRecord structure_record(const ReinforceRecord& last) {
+    StructureRecord record{last.max_score_pa, last.average_score_pa, last.median_score_pa,
+                           last.p99_score_pa, last.allowable_pa,     {},
+                           last.stopped_by};
+    record.verdict =
+        last.max_score_pa <= last.allowable_pa
+            ? "within the allowable stress"
+            : fmt::format("over the allowable stress by a factor of {:.2f}", last.max_score_pa / last.allowable_pa);
+    return record;
+}
+
+void note_structure(const StructureLoopResult& loop, RunReport& report) {
+    report.iterations = loop.records;
+    report.structure = structure_record(loop.records.back());
+    report.pattern.components_before = loop.components_before;
+    report.pattern.reinforced_voxels = static_cast<std::size_t>(std::ranges::count(loop.forced, std::uint8_t{1}));
+    if (report.structure.max_pa > report.structure.allowable_pa)
+        report.warnings.push_back(fmt::format("stress of {:.3g} MPa is {}; a thicker wall or a larger budget helps",
+                                              report.structure.max_pa * 1e-6, report.structure.verdict));
+}
+
+void note_pattern(const SurfaceVoxels& shell, const EnlargeResult& enlarged, RunReport& report) {
+    PatternRecord& pattern = report.pattern;
+    pattern.solid_voxels = static_cast<std::size_t>(std::ranges::count(enlarged.solid, SolidState::kSolid));
+    pattern.solid_fraction = static_cast<double>(pattern.solid_voxels) / static_cast<double>(shell.size());
+    pattern.components_after = enlarged.components;
+    pattern.voxels_enlarged = enlarged.voxels_enlarged;
+    pattern.voxels_filled = enlarged.voxels_filled;
+    pattern.islands_dropped = enlarged.islands_dropped;
+    pattern.islands_joined = enlarged.islands_joined;
+    if (pattern.solid_fraction > 0.97)
+        report.warnings.push_back(
+            "almost nothing was carved: holes are narrower than fabrication.min_hole_mm; a larger synthesis.scale "
+            "helps");
+}
+
+void note_output(const CarvedMesh& carved, const MeshReport& mesh, RunReport& report) {
+    report.mesh.report = mesh;
+    report.mesh.islands_removed = carved.islands_removed;
+    report.mesh.islands_volume_mm3 = carved.islands_volume_mm3;
+    if (mesh.components != report.shell.components)
+        report.warnings.push_back(
+            fmt::format("the carved mesh has {} shells for {} parts of the model: some are cavities", mesh.components,
+                        report.shell.components));
+}
+
+std::size_t component_count(const SurfaceVoxels& shell) {
+    return shell.components.empty() ? 0 : std::ranges::max(shell.components) + std::size_t{1};
+}
+
+}  // namespace
+
+CarveResult carve(const CarveInput& input, const Settings& settings, const RunLimits& limits, const RunControl& run) {
+    const ThreadLimit threads(limits.threads);
+    StagePlan plan(planned_stages(), run);
+    CarveResult result;
+    RunReport& report = result.report = report_of_request(input, settings);
+
+    PreparedSurface surface =
+        plan.run("repair", [&](const RunControl& r) { return prepare_surface(input.mesh, settings.input, r); });
+    report.input.scale = surface.scale;
+    report.input.mesh = surface.found;
+    std::ranges::copy(surface.warnings, std::back_inserter(report.warnings));
+    result.surface = std::move(surface.mesh);
+    const ResolvedSettings resolved = resolve_settings(settings, longest_side(result.surface),
+                                                       exemplar_facts(input.exemplar, input.exemplar_width_mm));
+    note_resolved(settings, resolved, report);
+    check_memory(result.surface, resolved, limits.max_memory_bytes);
+    const RegionField keep_field = keep_regions(result.surface, settings);
+
+    result.shell =
+        plan.run("voxelize", [&](const RunControl& r) { return voxelize(result.surface, resolved.voxelize, r); });
+    const SurfaceVoxels& shell = result.shell;
+    report.shell.surface_voxels = shell.size();
+    report.shell.components = component_count(shell);
+    const std::vector<std::uint8_t> keep = voxels_inside(shell, keep_field, run);
+    report.pattern.kept_voxels = static_cast<std::size_t>(std::ranges::count(keep, std::uint8_t{1}));
+    const ForceProfile profile = intended_use(result.surface, shell, settings, run);
+
+    const VoxelPyramid pyramid =
+        plan.run("pyramid", [&](const RunControl& r) { return build_pyramid(shell, resolved.pyramid_levels, r); });
+    Synthesizer synthesizer(pyramid, input.exemplar, resolved.synthesis);
+    plan.run("synthesize", [&](const RunControl& r) { synthesizer.synthesize(r); });
+
+    StructureLoopResult loop = plan.run("reinforce", [&](const RunControl& r) {
+        return structure_loop(shell, input.exemplar, synthesizer, profile, resolved, keep, r);
+    });
+    note_structure(loop, report);
+    result.reinforced = std::move(loop.forced);
+
+    EnlargeResult enlarged = plan.run(
+        "enlarge", [&](const RunControl& r) { return enlarge_features(shell, loop.solid, keep, resolved.enlarge, r); });
+    note_pattern(shell, enlarged, report);
+    result.solid = std::move(enlarged.solid);
+    result.voxel_colors = read_color(input.exemplar, synthesizer.frames());
+
+    result.carved = plan.run("solidify", [&](const RunControl& r) {
+        const PatternField pattern(shell, result.solid, synthesizer.frames(), input.exemplar, keep_field);
+        return solidify(result.surface, shell, pattern, resolved.solidify, r);
+    });
+    const MeshReport carved = plan.run("verify", [&](const RunControl& r) {
+        const MeshReport found = report_mesh(result.carved.mesh, CountSelfIntersections::kYes, r);
+        r.checkpoint("verify", 1.0);
+        return found;
+    });
+    note_output(result.carved, carved, report);
+
+    report.seconds = plan.take_seconds();
+    report.seconds_total = plan.total_seconds();
+    report.seconds_resynthesis = loop.seconds_resynthesis;
+    report.peak_memory_bytes = peak_memory_bytes();
+    return result;
+}
+
+RunReport check_carve(const CarveInput& input, const Settings& settings, const RunLimits& limits,
+                      const RunControl& run) {
+    const ThreadLimit threads(limits.threads);
+    RunReport report = report_of_request(input, settings);
+    const double scale = input_scale(input.mesh, settings.input);
+    report.input.scale = scale;
+    const PreparedSurface surface = prepare_surface(input.mesh, settings.input, run.slice(0.0, 0.8));
+    report.input.mesh = surface.found;
+    std::ranges::copy(surface.warnings, std::back_inserter(report.warnings));
+    const ResolvedSettings resolved =
+        resolve_settings(settings, longest_side(surface.mesh), exemplar_facts(input.exemplar, input.exemplar_width_mm));
+    note_resolved(settings, resolved, report);
+    check_memory(surface.mesh, resolved, limits.max_memory_bytes);
+    report.peak_memory_bytes = estimated_peak_bytes(surface.mesh, resolved);
+
+    // A coarse shell is enough to see whether each region holds a part of the surface.
+    VoxelizeSettings coarse = resolved.voxelize;
+    coarse.resolution = std::min(coarse.resolution, 64);
+    const SurfaceVoxels shell = voxelize(surface.mesh, coarse, run.slice(0.8, 0.95));
+    report.shell.components = component_count(shell);
+    keep_regions(surface.mesh, settings);
+    intended_use(surface.mesh, shell, settings, run);
+    run.checkpoint("check", 1.0);
+    return report;
+}
+
+}  // namespace fretwork

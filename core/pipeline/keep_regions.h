@@ -1,0 +1,26 @@
+// [[keep]] and [[carve]] -> what may not be carved.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/run_control.h"
+#include "core/mesh/region.h"
+#include "core/pipeline/settings.h"
+#include "core/shell/surface_voxels.h"
+
+namespace fretwork {
+
+/// The regions of [[keep]], and the complement of those of [[carve]] where there are any.
+/// \throws InvalidSetting  a region that meets no part of the surface, by name.
+RegionField keep_regions(const TriangleMesh& mesh, const Settings& settings);
+
+/// One byte per voxel: 1 where `field` is negative at the voxel's surface point.
+std::vector<std::uint8_t> voxels_inside(const SurfaceVoxels& shell, const RegionField& field,
+                                        const RunControl& run = {});
+
+/// Indices of the voxels inside, ascending.
+std::vector<VoxelIndex> voxel_list_inside(const SurfaceVoxels& shell, const RegionField& field,
+                                          const RunControl& run = {});
+
+}  // namespace fretwork

@@ -1,0 +1,25 @@
+// The model as it was read -> the surface that is carved.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/run_control.h"
+#include "core/mesh/mesh_report.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/pipeline/settings.h"
+
+namespace fretwork {
+
+struct PreparedSurface {
+    TriangleMesh mesh;                  ///< scaled and repaired
+    double scale = 1.0;                 ///< factor on the model's coordinates
+    MeshReport found;                   ///< of the scaled mesh before its repair
+    std::vector<std::string> warnings;  ///< what was wrong and what was done, with counts
+};
+
+/// \throws InvalidInput       no usable triangle.
+/// \throws ConstraintsNotMet  see input_scale.
+PreparedSurface prepare_surface(const TriangleMesh& mesh, const InputOptions& input, const RunControl& run = {});
+
+}  // namespace fretwork

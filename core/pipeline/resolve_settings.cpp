@@ -1,0 +1,237 @@
+#include "core/pipeline/resolve_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/pipeline/settings_schema.h"
+
+namespace fretwork {
+namespace {
+
+constexpr double kLeastSideMm = 5.0, kMostSideMm = 5000.0;
+constexpr double kLeastWallVoxels = 2.0, kLeastFeatureVoxels = 2.0, kLeastRadiusVoxels = 1.5;
+constexpr int kDefaultResolution = 256;
+// A width that is a whole number of voxels may come out a rounding error below it.
+constexpr double kSlack = 1.0 - 1e-9;
+
+int resolution_for(double longest_side_mm, double voxel_mm) {
+    return static_cast<int>(std::ceil(longest_side_mm / voxel_mm * kSlack));
+}
+
+int choose_resolution(const ShellOptions& shell, double longest_side_mm) {
+    if (shell.resolution && shell.voxel_mm)
+        throw ConstraintsNotMet(
+            fmt::format("shell.resolution = {} and shell.voxel_mm = {:g} name the same thing; leave one out "
+                        "(shell.voxel_mm = {:g} is what the resolution gives)",
+                        *shell.resolution, *shell.voxel_mm, longest_side_mm / *shell.resolution));
+    if (!shell.voxel_mm) return shell.resolution.value_or(kDefaultResolution);
+    const SettingRange range = *setting_info("shell.resolution").range;
+    const double voxels = longest_side_mm / *shell.voxel_mm;
+    if (voxels < range.min || voxels > range.max)
+        throw ConstraintsNotMet(fmt::format(
+            "shell.voxel_mm = {:g} on a model of {:g} mm makes {:.0f} voxels; use {:g} to {:g} mm", *shell.voxel_mm,
+            longest_side_mm, voxels, longest_side_mm / range.max, longest_side_mm / range.min));
+    return resolution_for(longest_side_mm, *shell.voxel_mm);
+}
+
+double wall_thickness(const Settings& settings, const ResolvedSettings& r) {
+    if (!settings.shell.thickness_mm)
+        return std::max({0.02 * r.longest_side_mm, 2.5 * r.voxel_mm, 3.0 * settings.fabrication.nozzle_mm});
+    const double thickness = *settings.shell.thickness_mm;
+    if (thickness < kLeastWallVoxels * r.voxel_mm * kSlack)
+        throw ConstraintsNotMet(
+            fmt::format("shell.thickness_mm = {:g} is under two voxels of {:g} mm; use a thickness of {:.4g} mm or "
+                        "shell.resolution = {}",
+                        thickness, r.voxel_mm, kLeastWallVoxels * r.voxel_mm,
+                        resolution_for(r.longest_side_mm, thickness / kLeastWallVoxels)));
+    if (thickness > 0.5 * r.longest_side_mm)
+        throw ConstraintsNotMet(
+            fmt::format("shell.thickness_mm = {:g} is over half of the model's {:g} mm; use at most {:g}", thickness,
+                        r.longest_side_mm, 0.5 * r.longest_side_mm));
+    return thickness;
+}
+
+// A width of features or holes: what was asked, if it can be resolved and printed, else the default.
+double printable_width(const std::optional<double>& asked, const char* key, const FabricationOptions& fabrication,
+                       const ResolvedSettings& r) {
+    if (!asked) return std::max(2.0 * fabrication.nozzle_mm, kLeastFeatureVoxels * r.voxel_mm);
+    if (*asked < fabrication.nozzle_mm)
+        throw ConstraintsNotMet(fmt::format("{} = {:g} is under fabrication.nozzle_mm = {:g}; use {:g} or more", key,
+                                            *asked, fabrication.nozzle_mm, fabrication.nozzle_mm));
+    if (*asked < kLeastFeatureVoxels * r.voxel_mm * kSlack)
+        throw ConstraintsNotMet(fmt::format(
+            "{} = {:g} is under two voxels of {:g} mm; use {:.4g} or shell.resolution = {}", key, *asked, r.voxel_mm,
+            kLeastFeatureVoxels * r.voxel_mm, resolution_for(r.longest_side_mm, *asked / kLeastFeatureVoxels)));
+    if (*asked > 0.5 * r.longest_side_mm)
+        throw ConstraintsNotMet(fmt::format("{} = {:g} is over half of the model's {:g} mm; use at most {:g}", key,
+                                            *asked, r.longest_side_mm, 0.5 * r.longest_side_mm));
+    return *asked;
+}
+
+// Without a width, the picture keeps its size when the resolution changes: resolution is a matter of
+// quality, not of design. At the default resolution a pixel is a voxel.
+double exemplar_width(const Settings& settings, const ResolvedSettings& r, const ExemplarFacts& exemplar) {
+    const double scale = settings.synthesis.scale;
+    const double pixel_is_voxel = r.longest_side_mm * exemplar.width_px / kDefaultResolution;
+    const double natural = std::clamp(exemplar.natural_width_mm.value_or(pixel_is_voxel), 0.2 * r.longest_side_mm,
+                                      0.5 * r.longest_side_mm);
+    const double width = settings.exemplar.width_mm.value_or(natural) * scale;
+    const std::string named = settings.exemplar.width_mm
+                                  ? fmt::format("exemplar.width_mm = {:g}", *settings.exemplar.width_mm)
+                                  : fmt::format("an exemplar of {:g} mm", natural);
+    if (width > r.longest_side_mm)
+        throw ConstraintsNotMet(fmt::format(
+            "{} at synthesis.scale = {:g} is larger than the model's {:g} mm; use a scale of at most {:.3g}", named,
+            scale, r.longest_side_mm, scale * r.longest_side_mm / width));
+    constexpr double least_voxels = 8.0;
+    if (width < least_voxels * r.voxel_mm)
+        throw ConstraintsNotMet(
+            fmt::format("{} at synthesis.scale = {:g} is under {:g} voxels of {:g} mm; use a width of {:.4g} mm or "
+                        "shell.resolution = {}",
+                        named, scale, least_voxels, r.voxel_mm, least_voxels * r.voxel_mm / scale,
+                        resolution_for(r.longest_side_mm, width / least_voxels)));
+    return width;
+}
+
+SynthesisSettings synthesis_settings(const SynthesisOptions& o, double pixels_per_voxel) {
+    SynthesisSettings s;
+    s.seed = o.seed;
+    s.pixels_per_voxel = pixels_per_voxel;
+    s.orientation = o.orientation.mode;
+    s.direction = o.orientation.direction;
+    s.symmetric = o.symmetric;
+    s.jitter = o.jitter;
+    s.candidates = o.candidates;
+    s.fine_random_candidates = o.fine_random_candidates;
+    s.directions = o.directions;
+    s.rotations = o.rotations;
+    s.translations = o.translations;
+    s.transported = o.transported;
+    s.cone_deg = o.cone_deg;
+    s.distortion_weight = o.distortion_weight;
+    s.orientation_weight = o.orientation_weight;
+    s.border_weight = o.border_weight;
+    s.normalize_energy = o.normalize_energy;
+    s.coarse_passes = o.coarse_passes;
+    s.random_start = o.random_start;
+    return s;
+}
+
+// A bridge is as wide as a stroke of the pattern, so that it can pass for one.
+ReinforceSettings reinforce_settings(const Settings& settings, const ResolvedSettings& r, double half_stroke_mm) {
+    const StructureOptions& o = settings.structure;
+    ReinforceSettings s;
+    s.rules = o.rules;
+    s.thickness_mm = r.solidify.thickness_mm;
+    const double radius_mm = o.pattern_radius_mm.value_or(std::max(half_stroke_mm, 0.5 * r.enlarge.min_feature_mm));
+    s.pattern_radius_voxels = radius_mm / r.voxel_mm;
+    if (o.pattern_radius_mm && s.pattern_radius_voxels < kLeastRadiusVoxels * kSlack)
+        throw ConstraintsNotMet(fmt::format(
+            "structure.pattern_radius_mm = {:g} is under 1.5 voxels of {:g} mm; use {:.4g} or shell.resolution = {}",
+            radius_mm, r.voxel_mm, kLeastRadiusVoxels * r.voxel_mm,
+            resolution_for(r.longest_side_mm, radius_mm / kLeastRadiusVoxels)));
+    s.pattern_radius_voxels = std::max(s.pattern_radius_voxels, kLeastRadiusVoxels);
+    s.samples = o.samples;
+    s.safety_factor = o.safety_factor;
+    s.geodesic_factor = o.geodesic_factor;
+    s.soft_factor = o.soft_factor;
+    s.stress_ratio = o.stress_ratio;
+    s.material_budget = o.material_budget;
+    s.batch = o.batch;
+    s.max_iterations = o.max_iterations;
+    s.seed = settings.synthesis.seed;
+    return s;
+}
+
+Material chosen_material(const StructureOptions& o) {
+    Material material = material_by_name(o.material);
+    if (o.youngs_modulus_mpa) material.youngs_modulus_mpa = *o.youngs_modulus_mpa;
+    if (o.poissons_ratio) material.poissons_ratio = *o.poissons_ratio;
+    if (o.density_kg_m3) material.density_kg_m3 = *o.density_kg_m3;
+    if (o.strength_mpa) {
+        material.strength_z_mpa = *o.strength_mpa;
+        material.strength_xy_mpa = std::max(material.strength_xy_mpa, *o.strength_mpa);
+    }
+    return material;
+}
+
+}  // namespace
+
+double longest_side(const TriangleMesh& mesh) {
+    if (mesh.positions_mm.empty()) throw InvalidInput("the model has no vertices");
+    Vec3 low = mesh.positions_mm.front(), high = low;
+    for (std::size_t v = 0; v < mesh.positions_mm.size(); ++v) {
+        const Vec3& p = mesh.positions_mm[v];
+        if (!p.allFinite()) throw InvalidInput(fmt::format("vertex {} has a coordinate that is not finite", v));
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    return (high - low).maxCoeff();
+}
+
+double input_scale(const TriangleMesh& mesh, const InputOptions& input) {
+    const double side = longest_side(mesh);
+    if (side <= 0 || !std::isfinite(side)) throw InvalidInput("the model has no extent");
+    if (input.size_mm && input.scale != 1.0)
+        throw ConstraintsNotMet(
+            fmt::format("input.scale = {:g} and input.size_mm = {:g} name the same thing; leave one out (the size asks "
+                        "for a scale of {:g})",
+                        input.scale, *input.size_mm, *input.size_mm / side));
+    const double scale = input.size_mm ? *input.size_mm / side : input.scale;
+    if (scale * side < kLeastSideMm * kSlack || scale * side > kMostSideMm / kSlack)
+        throw ConstraintsNotMet(fmt::format(
+            "the model's longest side is {:g} mm, and Fretwork carves {:g} to {:g} mm; if the file is not in "
+            "millimetres, set its size with --size-mm (input.size_mm), for instance --size-mm 100",
+            scale * side, kLeastSideMm, kMostSideMm));
+    return scale;
+}
+
+ExemplarFacts exemplar_facts(const Exemplar& exemplar, std::optional<double> natural_width_mm) {
+    // Of a stroke of half width h, one pixel in h borders on empty.
+    std::size_t solid = 0, border = 0;
+    for (std::size_t p = 0; p < exemplar.solid.size(); ++p) {
+        if (!exemplar.solid[p]) continue;
+        ++solid;
+        if (exemplar.feature_distance_px[p] > -1.0F) ++border;
+    }
+    const double half = static_cast<double>(solid) / static_cast<double>(std::max<std::size_t>(border, 1));
+    return {exemplar.width, std::max(half, 0.5), natural_width_mm};
+}
+
+ResolvedSettings resolve_settings(const Settings& settings, double longest_side_mm, const ExemplarFacts& exemplar) {
+    ResolvedSettings r;
+    r.longest_side_mm = longest_side_mm;
+    r.voxelize.resolution = choose_resolution(settings.shell, longest_side_mm);
+    r.voxel_mm = longest_side_mm / r.voxelize.resolution;
+    r.pyramid_levels =
+        settings.synthesis.levels.value_or(std::bit_width(static_cast<unsigned>(r.voxelize.resolution - 1)));
+
+    r.solidify.thickness_mm = wall_thickness(settings, r);
+    r.solidify.side = settings.shell.side;
+    r.solidify.simplify_tolerance_voxels = settings.fabrication.simplify_voxels;
+    r.solidify.target_triangles = static_cast<std::size_t>(settings.fabrication.target_triangles);
+
+    r.enlarge.min_feature_mm =
+        printable_width(settings.fabrication.min_feature_mm, "fabrication.min_feature_mm", settings.fabrication, r);
+    r.enlarge.min_hole_mm =
+        printable_width(settings.fabrication.min_hole_mm, "fabrication.min_hole_mm", settings.fabrication, r);
+
+    r.exemplar_width_mm = exemplar_width(settings, r, exemplar);
+    const double pixels_per_voxel = exemplar.width_px * r.voxel_mm / r.exemplar_width_mm;
+    if (pixels_per_voxel > 3.0)
+        r.warnings.push_back(
+            fmt::format("a voxel covers {:.1f} pixels of the exemplar, so its fine lines are lost; shell.resolution = "
+                        "{} shows them",
+                        pixels_per_voxel, static_cast<int>(std::ceil(r.voxelize.resolution * pixels_per_voxel / 1.5))));
+    r.synthesis = synthesis_settings(settings.synthesis, pixels_per_voxel);
+
+    r.material = chosen_material(settings.structure);
+    r.reinforce = reinforce_settings(settings, r, exemplar.half_stroke_px / pixels_per_voxel * r.voxel_mm);
+    return r;
+}
+
+}  // namespace fretwork

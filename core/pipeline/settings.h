@@ -1,0 +1,158 @@
+// Everything a user can set, in the user's units, before anything is derived from the model.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/mesh/region.h"
+#include "core/reinforce/structural_optimizer.h"
+#include "core/solidify/solidify.h"
+#include "core/synthesis/synthesizer.h"
+
+namespace fretwork {
+
+/// Starting values for many keys at once; keys set by name win over the preset.
+enum class Preset {
+    kDraft,    ///< coarse voxels and few passes, for previews
+    kDefault,  ///< the settings documented key by key
+    kFine,     ///< 512 voxels along the longest side and a longer search
+    kPaper,    ///< the paper's parameters and rules as printed
+};
+
+/// Which forces the structural steps design for.
+enum class LoadProfile {
+    kAuto,      ///< own loads where [[loads]] are given; else handling, or gravity under the paper's rules
+    kGravity,   ///< self-weight on the lowest tenth
+    kHandling,  ///< self-weight, pinching across three axes, pushes at the top
+    kOwn,       ///< nothing but [[loads]] and [[fixtures]]
+};
+
+/// What colours the carved file carries.
+enum class OutputColor {
+    kExemplar,  ///< the picture's colours, per triangle
+    kSolid,     ///< the mean colour of the picture's solid part everywhere
+    kNone,
+};
+
+/// An orientation of the picture on the surface: a direction it follows, or none.
+struct OrientationChoice {
+    Orientation mode = Orientation::kVector;
+    Vec3 direction = Vec3::UnitZ();
+    friend bool operator==(const OrientationChoice&, const OrientationChoice&) = default;
+};
+
+struct InputOptions {
+    double scale = 1.0;             ///< factor on the model's coordinates
+    std::optional<double> size_mm;  ///< longest side after scaling; instead of `scale`
+};
+
+struct ExemplarOptions {
+    std::string pattern;              ///< a built-in pattern by name
+    std::string image;                ///< or a picture by path
+    std::string mask;                 ///< picture whose light parts are solid
+    std::optional<double> threshold;  ///< luma under which a pixel is solid
+    bool alpha = false;               ///< opaque pixels are solid
+    bool invert = false;
+    std::optional<bool> tileable;
+    std::optional<double> width_mm;  ///< real width of the picture on the surface
+    int max_side_px = 1024;
+};
+
+struct ShellOptions {
+    std::optional<double> thickness_mm;
+    WallSide side = WallSide::kInward;
+    std::optional<double> voxel_mm;
+    std::optional<int> resolution;  ///< voxels along the longest side
+};
+
+struct SynthesisOptions {
+    Preset preset = Preset::kDefault;
+    std::uint64_t seed = 1;
+    OrientationChoice orientation;
+    bool symmetric = false;
+    double scale = 1.0;  ///< of the pattern; 2 makes everything twice as large
+    double jitter = 0.05;
+    int candidates = 40;
+    int fine_random_candidates = 8;
+    int transported = 4;
+    int directions = 300;
+    int rotations = 1024;
+    int translations = 0;
+    double cone_deg = 25.0;
+    double distortion_weight = 1.0;
+    double orientation_weight = 2.0;
+    double border_weight = 0.5;
+    bool normalize_energy = true;
+    int coarse_passes = 8;
+    bool random_start = true;
+    std::optional<int> levels;
+};
+
+struct StructureOptions {
+    ReinforceRules rules = ReinforceRules::kDefault;
+    std::string material = "PLA";
+    std::optional<double> youngs_modulus_mpa;
+    std::optional<double> poissons_ratio;
+    std::optional<double> density_kg_m3;
+    std::optional<double> strength_mpa;
+    double safety_factor = 2.0;
+    LoadProfile profile = LoadProfile::kAuto;
+    Vec3 gravity = -Vec3::UnitZ();
+    double handling_force_n = 10.0;
+    double fixed_share = 0.1;
+    double geodesic_factor = 1.5;
+    std::optional<double> pattern_radius_mm;
+    int samples = 1000;
+    double soft_factor = 1e-3;
+    double stress_ratio = 10.0;
+    double material_budget = 0.15;
+    int batch = 8;
+    int max_iterations = 30;
+};
+
+struct FabricationOptions {
+    double nozzle_mm = 0.4;
+    std::optional<double> min_feature_mm;
+    std::optional<double> min_hole_mm;
+    double simplify_voxels = 0.1;
+    int target_triangles = 0;
+};
+
+struct OutputOptions {
+    OutputColor colour = OutputColor::kExemplar;
+    bool voxel_data = true;
+};
+
+/// A region that pushes.
+struct LoadOption {
+    Region region;
+    std::string load_case = "load";  ///< loads of one case act together
+    Vec3 force_n = Vec3::Zero();
+    double pressure_mpa = 0.0;
+};
+
+/// A region that holds.
+struct FixtureOption {
+    Region region;
+    std::string load_case;  ///< empty: holds in every case
+};
+
+/// The whole of a spec. Plain data: `settings_schema.h` knows names, ranges and help,
+/// `resolve_settings.h` derives what the stages need.
+struct Settings {
+    InputOptions input;
+    ExemplarOptions exemplar;
+    ShellOptions shell;
+    SynthesisOptions synthesis;
+    StructureOptions structure;
+    FabricationOptions fabrication;
+    OutputOptions output;
+    std::vector<Region> keep;   ///< stay solid
+    std::vector<Region> carve;  ///< if any: only these are carved, all else stays solid
+    std::vector<LoadOption> loads;
+    std::vector<FixtureOption> fixtures;
+};
+
+}  // namespace fretwork

@@ -1,0 +1,151 @@
+#include "formats/report_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace fretwork {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// JSON has no infinity; a number that is not finite is told as null.
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json vec_json(const Vec3& v) {
+    return Json::array({number(v[0]), number(v[1]), number(v[2])});
+}
+
+Json value_json(const SettingValue& value) {
+    return std::visit([](const auto& held) { return Json(held); }, value);
+}
+
+Json mesh_json(const MeshReport& m) {
+    Json json = {{"vertices", m.vertices},
+                 {"triangles", m.triangles},
+                 {"min_mm", vec_json(m.min_mm)},
+                 {"max_mm", vec_json(m.max_mm)},
+                 {"area_mm2", number(m.area_mm2)},
+                 {"volume_mm3", number(m.volume_mm3)},
+                 {"components", m.components},
+                 {"closed", m.border_edges == 0 && m.triangles > 0},
+                 {"manifold", m.closed_manifold() && m.non_manifold_vertices == 0},
+                 {"border_edges", m.border_edges},
+                 {"non_manifold_edges", m.non_manifold_edges},
+                 {"non_manifold_vertices", m.non_manifold_vertices},
+                 {"flipped_edges", m.flipped_edges},
+                 {"degenerate_triangles", m.degenerate_triangles},
+                 {"duplicate_triangles", m.duplicate_triangles}};
+    json["self_intersections"] = m.self_intersections_counted ? Json(m.self_intersections) : Json(nullptr);
+    return json;
+}
+
+Json settings_json(const std::vector<SettingAssignment>& assignments, const std::vector<SettingTable>& tables) {
+    Json json = Json::object();
+    for (const SettingAssignment& a : assignments) {
+        const auto dot = a.key.find('.');
+        json[a.key.substr(0, dot)][a.key.substr(dot + 1)] = value_json(a.value);
+    }
+    for (const SettingTable& table : tables) {
+        Json entry = Json::object();
+        for (const SettingAssignment& a : table.entries) entry[a.key] = value_json(a.value);
+        // "carve" and the like never clash with a section: sections hold keys, arrays hold tables.
+        json[table.array].push_back(entry);
+    }
+    return json;
+}
+
+Json pattern_json(const PatternRecord& p) {
+    return {{"exemplar_width_mm", number(p.exemplar_width_mm)},
+            {"pixels_per_voxel", number(p.pixels_per_voxel)},
+            {"exemplar_solid_fraction", number(p.exemplar_solid_fraction)},
+            {"solid_voxels", p.solid_voxels},
+            {"solid_fraction", number(p.solid_fraction)},
+            {"reinforced_voxels", p.reinforced_voxels},
+            {"kept_voxels", p.kept_voxels},
+            {"components_before", p.components_before},
+            {"components_after", p.components_after},
+            {"voxels_enlarged", p.voxels_enlarged},
+            {"voxels_filled", p.voxels_filled},
+            {"islands_dropped", p.islands_dropped},
+            {"islands_joined", p.islands_joined}};
+}
+
+Json iteration_json(const ReinforceRecord& r) {
+    return {
+        {"iteration", r.iteration},
+        {"components", r.components_before},
+        {"specks_dropped", r.specks_dropped},
+        {"bridges", {{"connect", r.bridges_connect}, {"stress", r.bridges_stress}, {"geodesic", r.bridges_geodesic}}},
+        {"voxels_added", r.voxels_added},
+        {"max_score_pa", number(r.max_score_pa)},
+        {"p99_score_pa", number(r.p99_score_pa)},
+        {"median_score_pa", number(r.median_score_pa)},
+        {"average_score_pa", number(r.average_score_pa)},
+        {"max_geodesic", number(r.max_geodesic)},
+        {"connected", r.connected},
+        {"stopped_by", r.stopped_by}};
+}
+
+Json structure_json(const StructureRecord& s) {
+    return {{"max_pa", number(s.max_pa)}, {"average_pa", number(s.average_pa)},     {"median_pa", number(s.median_pa)},
+            {"p99_pa", number(s.p99_pa)}, {"allowable_pa", number(s.allowable_pa)}, {"verdict", s.verdict},
+            {"stopped_by", s.stopped_by}};
+}
+
+Json printability_json(const RunReport& r) {
+    const MeshReport& mesh = r.mesh.report;
+    return {{"min_feature_mm", number(r.mesh.min_feature_mm)},
+            {"min_hole_mm", number(r.mesh.min_hole_mm)},
+            {"one_piece", r.pattern.components_after == r.shell.components},
+            {"valid_mesh", mesh.closed_manifold() && mesh.non_manifold_vertices == 0 && mesh.self_intersections == 0},
+            {"islands_removed", r.mesh.islands_removed},
+            {"islands_volume_mm3", number(r.mesh.islands_volume_mm3)}};
+}
+
+Json seconds_json(const RunReport& r) {
+    Json json = Json::object();
+    for (const StageSeconds& stage : r.seconds) {
+        json[stage.stage] = number(stage.seconds);
+        if (stage.stage == "synthesize") json["initial_synthesis"] = number(stage.seconds);
+        if (stage.stage == "reinforce") json["resynthesis"] = number(r.seconds_resynthesis);
+    }
+    json["total"] = number(r.seconds_total);
+    return json;
+}
+
+}  // namespace
+
+std::string report_json(const RunReport& r) {
+    Json json;
+    json["version"] = r.version;
+    json["input"] = {{"model", r.input.model},
+                     {"exemplar", r.input.exemplar},
+                     {"scale", number(r.input.scale)},
+                     {"mesh", mesh_json(r.input.mesh)}};
+    json["settings"] = settings_json(r.settings, r.regions);
+    json["seed"] = r.seed;
+    json["shell"] = {{"resolution", r.shell.resolution},
+                     {"voxel_mm", number(r.shell.voxel_mm)},
+                     {"surface_voxels", r.shell.surface_voxels},
+                     {"components", r.shell.components},
+                     {"thickness_mm", number(r.shell.thickness_mm)}};
+    json["pattern"] = pattern_json(r.pattern);
+    json["iterations"] = Json::array();
+    for (const ReinforceRecord& record : r.iterations) json["iterations"].push_back(iteration_json(record));
+    json["structure"] = structure_json(r.structure);
+    json["mesh"] = mesh_json(r.mesh.report);
+    json["mesh"]["min_feature_mm"] = number(r.mesh.min_feature_mm);
+    json["printability"] = printability_json(r);
+    json["seconds"] = seconds_json(r);
+    json["peak_memory_bytes"] = r.peak_memory_bytes;
+    json["warnings"] = r.warnings;
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string mesh_report_json(const MeshReport& report) {
+    return mesh_json(report).dump(2) + "\n";
+}
+
+}  // namespace fretwork
