@@ -13,6 +13,7 @@ enum class RandomStream : std::uint32_t {
     kSamples,
     kPattern,
     kTest,
+    kRender,
 };
 
 /// The same five numbers give the same 64 random bits on every machine and in any order of calls,
