@@ -1,5 +1,6 @@
 #include "core/render/corner_normals.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,5 +1,6 @@
 #include "core/render/lighting.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
