@@ -54,9 +54,11 @@ struct Region {
 /// Regions prepared against one mesh for many queries. Safe to query from several threads.
 class RegionField {
   public:
+    /// \param outside_of  if there are any, everything outside of all of them belongs to the union too: what
+    ///                    the user leaves when only these may be carved
     /// \throws InvalidSetting  a radius or width that is not positive, a zero normal, an empty box, a
     ///                         triangle past the end, a region that meets no part of the surface (by name).
-    RegionField(const TriangleMesh& mesh, std::vector<Region> regions);
+    RegionField(const TriangleMesh& mesh, std::vector<Region> regions, std::vector<Region> outside_of = {});
     ~RegionField();
     RegionField(RegionField&&) noexcept;
     RegionField& operator=(RegionField&&) noexcept;
