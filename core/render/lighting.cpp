@@ -11,12 +11,12 @@ namespace fretwork {
 namespace {
 
 // Chosen by eye so that a matt surface turned half-way to the light shows its own colour.
-const Vec3f kKeyColor(0.86f, 0.83f, 0.78f);
-const Vec3f kZenith(0.60f, 0.63f, 0.68f);
-const Vec3f kHorizon(0.42f, 0.43f, 0.45f);
-const Vec3f kGround(0.26f, 0.25f, 0.24f);
+const Vec3f kKeyColor(0.74f, 0.715f, 0.67f);
+const Vec3f kZenith(0.52f, 0.545f, 0.58f);
+const Vec3f kHorizon(0.37f, 0.38f, 0.40f);
+const Vec3f kGround(0.24f, 0.23f, 0.22f);
 /// What a blocked direction still returns: light that bounced between surfaces.
-const Vec3f kBounce(0.15f, 0.14f, 0.13f);
+const Vec3f kBounce(0.13f, 0.12f, 0.11f);
 constexpr float kKeySpread = 0.14f;  // tangent of the key light's half angle
 constexpr float kGloss = 0.09f, kGlossPower = 48.0f;
 /// Rays start this far off the surface, in scene units: well above the rounding of a hit, well below any wall.
@@ -80,7 +80,7 @@ bool Lighting::key_is_seen(const Vec3f& point, const Vec2f& xi, Vec3f& towards) 
 Incoming Lighting::on_model(const Vec3f& point, const Vec3f& facet, const Vec3f& normal, const Vec3f& to_eye,
                             const SampleSequence& random, int sample) const {
     const Vec3f start = point + kLift * facet;
-    Incoming in{Vec3f::Zero(), 0.0f};
+    Incoming in;
     const float cosine = normal.dot(key_);
     Vec3f towards;
     if (cosine > 0 && facet.dot(key_) > 0 && key_is_seen(start, random.at(2 * sample), towards)) {
@@ -105,7 +105,7 @@ float Lighting::on_floor(const Vec3f& point, const SampleSequence& random, int s
     Vec3f towards;
     const bool key = key_is_seen(start, random.at(2 * sample), towards);
     const bool open = !scene_.is_blocked(start, around(Vec3f::UnitZ(), random.at(2 * sample + 1)));
-    constexpr float kLeast = 0.16f;  // bounced light
+    constexpr float kLeast = 0.10f;  // bounced light
     return kLeast + (1 - kLeast) * ((key ? kKeyShare : 0.0f) + (open ? 1 - kKeyShare : 0.0f));
 }
 

@@ -20,8 +20,8 @@ class SampleSequence {
 };
 
 struct Incoming {
-    Vec3f diffuse;  ///< to be multiplied with the surface's colour
-    float gloss;    ///< to be added
+    Vec3f diffuse = Vec3f::Zero();  ///< to be multiplied with the surface's colour
+    float gloss = 0;                ///< to be added
 };
 
 class Lighting {

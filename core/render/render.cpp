@@ -103,8 +103,7 @@ class Picture {
   public:
     Picture(const TriangleMesh& mesh, std::span<const Rgb8> colors, const RenderSettings& settings,
             const std::vector<Vec3>& points, const RunControl& run)
-        : mesh_(mesh),
-          settings_(settings),
+        : settings_(settings),
           camera_(points, settings),
           scene_(mesh, run),
           normals_(corner_normals(mesh, settings.crease_angle_deg)),
@@ -118,6 +117,9 @@ class Picture {
         double lowest = std::numeric_limits<double>::infinity();
         for (const Vec3& p : points) lowest = std::min(lowest, scene_.to_scene(p).z());
         floor_z_ = static_cast<float>(lowest);
+        const Vec2 middle(settings.width / 2.0, settings.height / 2.0);
+        pixel_tangent_ =
+            static_cast<float>((camera_.direction(middle) - camera_.direction(middle + Vec2::UnitX())).norm());
         pixels_.resize(static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height));
     }
 
@@ -132,13 +134,19 @@ class Picture {
     [[nodiscard]] std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(settings_.width) + static_cast<std::size_t>(x);
     }
+    /// The light found by the previous sample of a pixel, for the next one to use if it meets the same surface.
+    struct Found {
+        Incoming in;
+        Vec3f normal = Vec3f::Zero();
+        float distance = -1;
+    };
+
     void draw_pixel(int x, int y);
     void shade_model(const RayScene::Hit& hit, const Vec3f& direction, const SampleSequence& random, int sample,
-                     PixelSum& sum) const;
+                     Found& last, PixelSum& sum) const;
     bool shade_floor(const Vec3f& direction, const Vec3f& background, const SampleSequence& random, int sample,
-                     PixelSum& sum) const;
+                     Found& last, PixelSum& sum) const;
 
-    const TriangleMesh& mesh_;
     const RenderSettings& settings_;
     Camera camera_;
     RayScene scene_;
@@ -149,6 +157,7 @@ class Picture {
     Vec3f material_, top_, bottom_;
     std::array<float, 256> linear_{};
     float floor_z_ = 0;
+    float pixel_tangent_ = 0;  ///< width of a pixel over its distance
     std::vector<PixelSum> pixels_;
 };
 
@@ -156,20 +165,21 @@ void Picture::draw_pixel(int x, int y) {
     const int n = settings_.samples_per_axis;
     const SampleSequence random(index(x, y));
     PixelSum& sum = pixels_[index(x, y)];
+    Found on_model, on_floor;
     for (int s = 0; s < n * n; ++s) {
         const Vec2 at(x + (s % n + 0.5) / n, y + (s / n + 0.5) / n);
         const Vec3f direction = camera_.direction(at).cast<float>();
         const float down = static_cast<float>(at.y()) / static_cast<float>(settings_.height);
         const Vec3f background = top_ + down * (bottom_ - top_);
         if (const auto hit = scene_.first_hit(eye_, direction))
-            shade_model(*hit, direction, random, s, sum);
-        else if (!shade_floor(direction, background, random, s, sum))
+            shade_model(*hit, direction, random, s, on_model, sum);
+        else if (!shade_floor(direction, background, random, s, on_floor, sum))
             sum.open += background;
     }
 }
 
 void Picture::shade_model(const RayScene::Hit& hit, const Vec3f& direction, const SampleSequence& random, int sample,
-                          PixelSum& sum) const {
+                          Found& last, PixelSum& sum) const {
     const std::array<Vec3f, 3>& corner = normals_[hit.triangle];
     Vec3f normal = (1 - hit.u - hit.v) * corner[0] + hit.u * corner[1] + hit.v * corner[2];
     if (normal.dot(hit.facet_normal) < 0) normal = -normal;
@@ -180,14 +190,20 @@ void Picture::shade_model(const RayScene::Hit& hit, const Vec3f& direction, cons
         const Rgb8& c = colors_[hit.triangle];
         albedo = Vec3f(linear_[c[0]], linear_[c[1]], linear_[c[2]]);
     }
-    const Incoming in =
-        lighting_.on_model(eye_ + hit.distance * direction, hit.facet_normal, normal, -direction, random, sample);
-    const Vec3f shown = expose(albedo.cwiseProduct(in.diffuse) + Vec3f::Constant(in.gloss));
-    sum.add(shown, in.diffuse, normal, hit.distance);
+    // Light changes little within a pixel on one surface, and rays to the lights cost most: every second sample reuses
+    // what the one before found.
+    const bool same_surface =
+        std::abs(hit.distance - last.distance) < 4 * pixel_tangent_ * hit.distance && normal.dot(last.normal) > 0.98f;
+    if (sample % 2 == 0 || !same_surface)
+        last = {
+            lighting_.on_model(eye_ + hit.distance * direction, hit.facet_normal, normal, -direction, random, sample),
+            normal, hit.distance};
+    const Vec3f shown = expose(albedo.cwiseProduct(last.in.diffuse) + Vec3f::Constant(last.in.gloss));
+    sum.add(shown, last.in.diffuse, normal, hit.distance);
 }
 
 bool Picture::shade_floor(const Vec3f& direction, const Vec3f& background, const SampleSequence& random, int sample,
-                          PixelSum& sum) const {
+                          Found& last, PixelSum& sum) const {
     if (!settings_.floor || direction.z() >= 0 || eye_.z() <= floor_z_) return false;
     const float distance = (floor_z_ - eye_.z()) / direction.z();
     const Vec3f point = eye_ + distance * direction;
@@ -196,7 +212,9 @@ bool Picture::shade_floor(const Vec3f& direction, const Vec3f& background, const
     const float away = std::hypot(point.x(), point.y());
     if (away >= kFadeTo) return false;
     const float fade = std::clamp((kFadeTo - away) / (kFadeTo - kFadeFrom), 0.0f, 1.0f);
-    const float light = 1 - fade * (1 - lighting_.on_floor(point, random, sample));
+    if (sample % 2 == 0 || last.distance < 0)
+        last = {{Vec3f::Constant(lighting_.on_floor(point, random, sample)), 0.0f}, Vec3f::UnitZ(), distance};
+    const float light = 1 - fade * (1 - last.in.diffuse.x());
     sum.add(background * light, Vec3f::Constant(light), Vec3f::UnitZ(), distance);
     return true;
 }
@@ -209,10 +227,7 @@ Image Picture::finish() const {
         const float share = 1.0f / static_cast<float>(p.count_met);
         light[i] = {p.light * share, p.normal * share, p.depth * share};
     }
-    const Vec3 left = camera_.direction({settings_.width / 2.0 - 0.5, settings_.height / 2.0});
-    const Vec3 right = camera_.direction({settings_.width / 2.0 + 0.5, settings_.height / 2.0});
-    const std::vector<Vec3f> smooth =
-        filter_light(light, settings_.width, settings_.height, static_cast<float>((right - left).norm()));
+    const std::vector<Vec3f> smooth = filter_light(light, settings_.width, settings_.height, pixel_tangent_);
 
     Image out{settings_.width, settings_.height, {}, false};
     out.pixels.resize(pixels_.size());
