@@ -55,7 +55,7 @@ RunReport report_of_request(const CarveInput& input, const Settings& settings) {
     report.version = version();
     report.input.model = input.model_name;
     report.input.exemplar = input.exemplar_name;
-    report.seed = settings.synthesis.seed;
+    report.seed = settings.synthesis.search.seed;
     report.regions = document_from(settings).tables;
     report.pattern.exemplar_solid_fraction = input.exemplar.solid_fraction();
     return report;
@@ -141,7 +141,8 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
                                                        exemplar_facts(input.exemplar, input.exemplar_width_mm));
     note_resolved(settings, resolved, report);
     check_memory(result.surface, resolved, limits.max_memory_bytes);
-    const RegionField keep_field = keep_regions(result.surface, settings);
+    const Settings local = with_triangles_of(surface.source_triangles, input.mesh.triangles.size(), settings);
+    const RegionField keep_field = keep_regions(result.surface, local);
 
     result.shell =
         plan.run("voxelize", [&](const RunControl& r) { return voxelize(result.surface, resolved.voxelize, r); });
@@ -150,7 +151,7 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     report.shell.components = component_count(shell);
     const std::vector<std::uint8_t> keep = voxels_inside(shell, keep_field, run);
     report.pattern.kept_voxels = static_cast<std::size_t>(std::ranges::count(keep, std::uint8_t{1}));
-    const ForceProfile profile = intended_use(result.surface, shell, settings, run);
+    const ForceProfile profile = intended_use(result.surface, shell, local, run);
 
     const VoxelPyramid pyramid =
         plan.run("pyramid", [&](const RunControl& r) { return build_pyramid(shell, resolved.pyramid_levels, r); });
@@ -170,8 +171,9 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     result.voxel_colors = read_color(input.exemplar, synthesizer.frames());
 
     result.carved = plan.run("solidify", [&](const RunControl& r) {
-        const PatternField pattern(shell, result.solid, synthesizer.frames(), input.exemplar, keep_field);
-        return solidify(result.surface, shell, pattern, resolved.solidify, r);
+        const PatternField pattern(result.surface, shell, result.solid, synthesizer.frames(), input.exemplar,
+                                   keep_field, r.slice(0.0, 0.1));
+        return solidify(result.surface, shell, pattern, resolved.solidify, r.slice(0.1, 1.0));
     });
     const MeshReport carved = plan.run("verify", [&](const RunControl& r) {
         const MeshReport found = report_mesh(result.carved.mesh, CountSelfIntersections::kYes, r);
@@ -207,8 +209,9 @@ RunReport check_carve(const CarveInput& input, const Settings& settings, const R
     coarse.resolution = std::min(coarse.resolution, 64);
     const SurfaceVoxels shell = voxelize(surface.mesh, coarse, run.slice(0.8, 0.95));
     report.shell.components = component_count(shell);
-    keep_regions(surface.mesh, settings);
-    intended_use(surface.mesh, shell, settings, run);
+    const Settings local = with_triangles_of(surface.source_triangles, input.mesh.triangles.size(), settings);
+    keep_regions(surface.mesh, local);
+    intended_use(surface.mesh, shell, local, run);
     run.checkpoint("check", 1.0);
     return report;
 }

@@ -65,7 +65,7 @@ ForceProfile own_loads(const TriangleMesh& mesh, const SurfaceVoxels& shell, con
 LoadProfile chosen_profile(const Settings& settings) {
     if (settings.structure.profile != LoadProfile::kAuto) return settings.structure.profile;
     if (!settings.loads.empty()) return LoadProfile::kOwn;
-    return settings.structure.rules == ReinforceRules::kPaper ? LoadProfile::kGravity : LoadProfile::kHandling;
+    return settings.structure.steps.rules == ReinforceRules::kPaper ? LoadProfile::kGravity : LoadProfile::kHandling;
 }
 
 ForceProfile intended_use(const TriangleMesh& mesh, const SurfaceVoxels& shell, const Settings& settings,
@@ -75,7 +75,7 @@ ForceProfile intended_use(const TriangleMesh& mesh, const SurfaceVoxels& shell, 
     if (chosen == LoadProfile::kOwn) return own_loads(mesh, shell, settings, run);
     ForceProfile profile;
     profile.cases.push_back(gravity_case(shell, structure.gravity, structure.fixed_share));
-    profile.cases.front().constant_per_sample = structure.rules == ReinforceRules::kPaper;
+    profile.cases.front().constant_per_sample = structure.steps.rules == ReinforceRules::kPaper;
     if (chosen == LoadProfile::kHandling)
         for (LoadCase& load_case : handling_cases(shell, structure.handling_force_n, structure.fixed_share))
             profile.cases.push_back(std::move(load_case));

@@ -11,6 +11,12 @@
 
 namespace fretwork {
 
+/// The settings with triangle sets, which name triangles of the file, turned to those of the repaired mesh.
+/// \param source_triangles  triangle of the file that each triangle of the mesh is part of
+/// \throws InvalidSetting   a triangle that the file does not have, or none of a set left
+Settings with_triangles_of(const std::vector<std::uint32_t>& source_triangles, std::size_t file_triangles,
+                           Settings settings);
+
 /// The regions of [[keep]], and the complement of those of [[carve]] where there are any.
 /// \throws InvalidSetting  a region that meets no part of the surface, by name.
 RegionField keep_regions(const TriangleMesh& mesh, const Settings& settings);

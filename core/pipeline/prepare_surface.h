@@ -1,6 +1,7 @@
 // The model as it was read -> the surface that is carved.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,11 @@
 namespace fretwork {
 
 struct PreparedSurface {
-    TriangleMesh mesh;                  ///< scaled and repaired
-    double scale = 1.0;                 ///< factor on the model's coordinates
-    MeshReport found;                   ///< of the scaled mesh before its repair
-    std::vector<std::string> warnings;  ///< what was wrong and what was done, with counts
+    TriangleMesh mesh;                            ///< scaled and repaired
+    std::vector<std::uint32_t> source_triangles;  ///< triangle of the input that each triangle is part of
+    double scale = 1.0;                           ///< factor on the model's coordinates
+    MeshReport found;                             ///< of the scaled mesh before its repair
+    std::vector<std::string> warnings;            ///< what was wrong and what was done, with counts
 };
 
 /// \throws InvalidInput       no usable triangle.

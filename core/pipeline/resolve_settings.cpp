@@ -97,35 +97,18 @@ double exemplar_width(const Settings& settings, const ResolvedSettings& r, const
     return width;
 }
 
-SynthesisSettings synthesis_settings(const SynthesisOptions& o, double pixels_per_voxel) {
-    SynthesisSettings s;
-    s.seed = o.seed;
+SynthesisSettings synthesis_settings(const SynthesisOptions& options, double pixels_per_voxel) {
+    SynthesisSettings s = options.search;
     s.pixels_per_voxel = pixels_per_voxel;
-    s.orientation = o.orientation.mode;
-    s.direction = o.orientation.direction;
-    s.symmetric = o.symmetric;
-    s.jitter = o.jitter;
-    s.candidates = o.candidates;
-    s.fine_random_candidates = o.fine_random_candidates;
-    s.directions = o.directions;
-    s.rotations = o.rotations;
-    s.translations = o.translations;
-    s.transported = o.transported;
-    s.cone_deg = o.cone_deg;
-    s.distortion_weight = o.distortion_weight;
-    s.orientation_weight = o.orientation_weight;
-    s.border_weight = o.border_weight;
-    s.normalize_energy = o.normalize_energy;
-    s.coarse_passes = o.coarse_passes;
-    s.random_start = o.random_start;
+    s.orientation = options.orientation.mode;
+    s.direction = options.orientation.direction;
     return s;
 }
 
 // A bridge is as wide as a stroke of the pattern, so that it can pass for one.
 ReinforceSettings reinforce_settings(const Settings& settings, const ResolvedSettings& r, double half_stroke_mm) {
     const StructureOptions& o = settings.structure;
-    ReinforceSettings s;
-    s.rules = o.rules;
+    ReinforceSettings s = o.steps;
     s.thickness_mm = r.solidify.thickness_mm;
     const double radius_mm = o.pattern_radius_mm.value_or(std::max(half_stroke_mm, 0.5 * r.enlarge.min_feature_mm));
     s.pattern_radius_voxels = radius_mm / r.voxel_mm;
@@ -135,15 +118,7 @@ ReinforceSettings reinforce_settings(const Settings& settings, const ResolvedSet
             radius_mm, r.voxel_mm, kLeastRadiusVoxels * r.voxel_mm,
             resolution_for(r.longest_side_mm, radius_mm / kLeastRadiusVoxels)));
     s.pattern_radius_voxels = std::max(s.pattern_radius_voxels, kLeastRadiusVoxels);
-    s.samples = o.samples;
-    s.safety_factor = o.safety_factor;
-    s.geodesic_factor = o.geodesic_factor;
-    s.soft_factor = o.soft_factor;
-    s.stress_ratio = o.stress_ratio;
-    s.material_budget = o.material_budget;
-    s.batch = o.batch;
-    s.max_iterations = o.max_iterations;
-    s.seed = settings.synthesis.seed;
+    s.seed = settings.synthesis.search.seed;
     return s;
 }
 

@@ -69,47 +69,26 @@ struct ShellOptions {
 
 struct SynthesisOptions {
     Preset preset = Preset::kDefault;
-    std::uint64_t seed = 1;
     OrientationChoice orientation;
-    bool symmetric = false;
-    double scale = 1.0;  ///< of the pattern; 2 makes everything twice as large
-    double jitter = 0.05;
-    int candidates = 40;
-    int fine_random_candidates = 8;
-    int transported = 4;
-    int directions = 300;
-    int rotations = 1024;
-    int translations = 0;
-    double cone_deg = 25.0;
-    double distortion_weight = 1.0;
-    double orientation_weight = 2.0;
-    double border_weight = 0.5;
-    bool normalize_energy = true;
-    int coarse_passes = 8;
-    bool random_start = true;
-    std::optional<int> levels;
+    double scale = 1.0;         ///< of the pattern; 2 makes everything twice as large
+    std::optional<int> levels;  ///< of the pyramid
+    /// Everything the synthesizer takes as it is; orientation and pixels per voxel are derived.
+    SynthesisSettings search;
 };
 
 struct StructureOptions {
-    ReinforceRules rules = ReinforceRules::kDefault;
     std::string material = "PLA";
     std::optional<double> youngs_modulus_mpa;
     std::optional<double> poissons_ratio;
     std::optional<double> density_kg_m3;
     std::optional<double> strength_mpa;
-    double safety_factor = 2.0;
     LoadProfile profile = LoadProfile::kAuto;
     Vec3 gravity = -Vec3::UnitZ();
     double handling_force_n = 10.0;
     double fixed_share = 0.1;
-    double geodesic_factor = 1.5;
     std::optional<double> pattern_radius_mm;
-    int samples = 1000;
-    double soft_factor = 1e-3;
-    double stress_ratio = 10.0;
-    double material_budget = 0.15;
-    int batch = 8;
-    int max_iterations = 30;
+    /// Everything the optimizer takes as it is; thickness, radius and seed are derived.
+    ReinforceSettings steps;
 };
 
 struct FabricationOptions {

@@ -216,48 +216,59 @@ void add_shell(std::vector<SettingInfo>& t) {
 void add_synthesis(std::vector<SettingInfo>& t) {
     t.push_back(row("synthesis.preset", FIELD(synthesis.preset), "1", {},
                     "Starting values for many keys: speed, quality, or the paper's own parameters."));
-    t.push_back(row("synthesis.seed", FIELD(synthesis.seed), "1", between(0, 9.2e18),
+    t.push_back(row("synthesis.seed", FIELD(synthesis.search.seed), "1", between(0, 9.2e18),
                     "Another number gives another arrangement of the same pattern."));
     t.push_back(row("synthesis.orientation", FIELD(synthesis.orientation), "1", {},
                     "Where the picture's up points on the surface: \"up\", \"free\" or a direction [x, y, z]."));
-    t.push_back(
-        row("synthesis.symmetric", FIELD(synthesis.symmetric), "1", {}, "Up and down of the picture are the same."));
+    t.push_back(row("synthesis.symmetric", FIELD(synthesis.search.symmetric), "1", {},
+                    "Up and down of the picture are the same."));
+    t.push_back(row("synthesis.orientation_smoothing", FIELD(synthesis.search.orientation_smoothing), "1",
+                    between(0, 1),
+                    "Length over which that direction is evened out, in longest sides; 0 = projected as it is."));
     t.push_back(row("synthesis.scale", FIELD(synthesis.scale), "1", between(0.1, 20),
                     "Size of the pattern against its normal size."));
-    t.push_back(row("synthesis.jitter", FIELD(synthesis.jitter), "1", between(0, 1),
+    t.push_back(row("synthesis.jitter", FIELD(synthesis.search.jitter), "1", between(0, 1),
                     "Share of voxels relabelled at random on coarse levels."));
-    t.push_back(row("synthesis.candidates", FIELD(synthesis.candidates), "1", between(1, 256),
+    t.push_back(row("synthesis.jitter_from_level", FIELD(synthesis.search.jitter_from_level), "1", between(0, 12),
+                    "Finest level on which labels are jittered; 0 = all."));
+    t.push_back(row("synthesis.candidates", FIELD(synthesis.search.candidates), "1", between(1, 256),
                     "Labels tried per voxel and pass, copied and random ones together."));
-    t.push_back(row("synthesis.fine_random_candidates", FIELD(synthesis.fine_random_candidates), "1", between(0, 256),
-                    "Random ones among them on the two finest levels."));
-    t.push_back(row("synthesis.transported", FIELD(synthesis.transported), "1", between(0, 64),
+    t.push_back(row("synthesis.fine_random_candidates", FIELD(synthesis.search.fine_random_candidates), "1",
+                    between(0, 256), "Random ones among them on the two finest levels."));
+    t.push_back(row("synthesis.transported", FIELD(synthesis.search.transported), "1", between(0, 64),
                     "Copied labels that are turned to the voxel's own best plane."));
-    t.push_back(row("synthesis.directions", FIELD(synthesis.directions), "1", between(6, 4096),
+    t.push_back(row("synthesis.count_repeated", FIELD(synthesis.search.count_repeated), "1", {},
+                    "Neighbours that agree use up one candidate each, as in the paper."));
+    t.push_back(row("synthesis.directions", FIELD(synthesis.search.directions), "1", between(6, 4096),
                     "Projection planes; 26 gives the paper's set."));
-    t.push_back(row("synthesis.rotations", FIELD(synthesis.rotations), "1", between(1, 4096),
+    t.push_back(row("synthesis.rotations", FIELD(synthesis.search.rotations), "1", between(1, 4096),
                     "Rotations of the picture in each plane."));
-    t.push_back(row("synthesis.translations", FIELD(synthesis.translations), "1", between(0, 1024),
+    t.push_back(row("synthesis.translations", FIELD(synthesis.search.translations), "1", between(0, 1024),
                     "Shifts of the picture per axis; 0 = continuous."));
-    t.push_back(row("synthesis.cone_deg", FIELD(synthesis.cone_deg), "deg", between(1, 90),
+    t.push_back(row("synthesis.cone_deg", FIELD(synthesis.search.cone_deg), "deg", between(0, 90),
                     "Random planes lie within this angle of the surface normal."));
-    t.push_back(row("synthesis.distortion_weight", FIELD(synthesis.distortion_weight), "1", between(0, 100),
+    t.push_back(row("synthesis.distortion_weight", FIELD(synthesis.search.distortion_weight), "1", between(0, 100),
                     "Weight of foreshortening against colour."));
-    t.push_back(row("synthesis.orientation_weight", FIELD(synthesis.orientation_weight), "1", between(0, 100),
+    t.push_back(row("synthesis.orientation_weight", FIELD(synthesis.search.orientation_weight), "1", between(0, 100),
                     "Weight of the wanted orientation against colour."));
-    t.push_back(row("synthesis.border_weight", FIELD(synthesis.border_weight), "1", between(0, 100),
+    t.push_back(row("synthesis.border_weight", FIELD(synthesis.search.border_weight), "1", between(0, 100),
                     "Penalty of places near the border of a picture that does not tile."));
-    t.push_back(row("synthesis.normalize_energy", FIELD(synthesis.normalize_energy), "1", {},
+    t.push_back(row("synthesis.border_band", FIELD(synthesis.search.border_band), "1", between(0, 0.4),
+                    "What counts as near that border, as a share of the side."));
+    t.push_back(row("synthesis.feature_weight", FIELD(synthesis.search.feature_weight), "1", between(0, 1),
+                    "Weight of the distance to the solid's border against one colour channel."));
+    t.push_back(row("synthesis.normalize_energy", FIELD(synthesis.search.normalize_energy), "1", {},
                     "Divide the colour energy by the number of neighbours."));
-    t.push_back(row("synthesis.coarse_passes", FIELD(synthesis.coarse_passes), "1", between(1, 64),
+    t.push_back(row("synthesis.coarse_passes", FIELD(synthesis.search.coarse_passes), "1", between(1, 64),
                     "Most passes on a coarse level; finer ones get half each."));
-    t.push_back(row("synthesis.random_start", FIELD(synthesis.random_start), "1", {},
+    t.push_back(row("synthesis.random_start", FIELD(synthesis.search.random_start), "1", {},
                     "Start from random labels instead of one label everywhere."));
     t.push_back(row("synthesis.levels", FIELD(synthesis.levels), "1", between(1, 12), "Levels of the voxel pyramid.",
                     "one per halving of the resolution"));
 }
 
 void add_structure(std::vector<SettingInfo>& t) {
-    t.push_back(row("structure.rules", FIELD(structure.rules), "1", {},
+    t.push_back(row("structure.rules", FIELD(structure.steps.rules), "1", {},
                     "Order and thresholds of the reinforcement: Fretwork's own or the paper's."));
     t.push_back(row("structure.material", FIELD(structure.material), "1", {},
                     "What it is printed from: PLA, PETG, ABS, PA12 or resin."));
@@ -269,7 +280,7 @@ void add_structure(std::vector<SettingInfo>& t) {
                     "from structure.material"));
     t.push_back(row("structure.strength_mpa", FIELD(structure.strength_mpa), "MPa", above(0, 1e4),
                     "Strength across the printed layers.", "from structure.material"));
-    t.push_back(row("structure.safety_factor", FIELD(structure.safety_factor), "1", between(1, 100),
+    t.push_back(row("structure.safety_factor", FIELD(structure.steps.safety_factor), "1", between(1, 100),
                     "Allowable stress = strength / this."));
     t.push_back(row("structure.profile", FIELD(structure.profile), "1", {},
                     "Forces to withstand; auto takes [[loads]] where given, else handling."));
@@ -279,21 +290,21 @@ void add_structure(std::vector<SettingInfo>& t) {
                     "Force of each pinch and push of the handling profile."));
     t.push_back(row("structure.fixed_share", FIELD(structure.fixed_share), "1", above(0, 0.9),
                     "Lowest share of the height that is held where no [[fixtures]] are given."));
-    t.push_back(row("structure.geodesic_factor", FIELD(structure.geodesic_factor), "1", between(0, 100),
+    t.push_back(row("structure.geodesic_factor", FIELD(structure.steps.geodesic_factor), "1", between(0, 100),
                     "Longest way around through solid, in extents of the object; 0 = any."));
     t.push_back(row("structure.pattern_radius_mm", FIELD(structure.pattern_radius_mm), "mm", above(0, 100),
                     "Half the width of a bridge.", "half a stroke of the exemplar, at least 1.5 voxels"));
-    t.push_back(row("structure.samples", FIELD(structure.samples), "1", between(10, 20000),
+    t.push_back(row("structure.samples", FIELD(structure.steps.samples), "1", between(10, 20000),
                     "Vertices of the abstract graph; the paper uses 500 to 1000."));
-    t.push_back(row("structure.soft_factor", FIELD(structure.soft_factor), "1", between(1e-9, 1),
+    t.push_back(row("structure.soft_factor", FIELD(structure.steps.soft_factor), "1", between(1e-9, 1),
                     "Stiffness of empty edges against solid ones."));
-    t.push_back(row("structure.stress_ratio", FIELD(structure.stress_ratio), "1", between(1, 1000),
+    t.push_back(row("structure.stress_ratio", FIELD(structure.steps.stress_ratio), "1", between(1, 1000),
                     "Stress at which reinforcing stops, in medians."));
-    t.push_back(row("structure.material_budget", FIELD(structure.material_budget), "1", between(0, 1),
+    t.push_back(row("structure.material_budget", FIELD(structure.steps.material_budget), "1", between(0, 1),
                     "Most voxels added against stress, as a share of the shell."));
-    t.push_back(row("structure.batch", FIELD(structure.batch), "1", between(1, 1000),
+    t.push_back(row("structure.batch", FIELD(structure.steps.batch), "1", between(1, 1000),
                     "Bridges between two solutions of the equations."));
-    t.push_back(row("structure.max_iterations", FIELD(structure.max_iterations), "1", between(1, 1000),
+    t.push_back(row("structure.max_iterations", FIELD(structure.steps.max_iterations), "1", between(1, 1000),
                     "Most turns of the loop of reinforcement and resynthesis."));
 }
 
