@@ -129,8 +129,7 @@ GaussianStack build_gaussian_stack(const Exemplar& exemplar, const GaussianStack
             stack.levels.push_back(pack(sharp));
         } else {
             const std::vector<float> kernel = gaussian_kernel(sigma);
-            const Plane half =
-                blur_and_transpose(sharp, exemplar.width, exemplar.height, kernel, exemplar.tileable);
+            const Plane half = blur_and_transpose(sharp, exemplar.width, exemplar.height, kernel, exemplar.tileable);
             stack.levels.push_back(
                 pack(blur_and_transpose(half, exemplar.height, exemplar.width, kernel, exemplar.tileable)));
         }

@@ -12,7 +12,9 @@ namespace fretwork {
 
 /// M(x, psi(v), tau(v)) of the paper, section 4.1, written around the voxel's own surface point: the
 /// exemplar position of a point at distance d (in voxels of the finest level) from it is
-/// (u + du.d, v + dv.d), in exemplar pixels, continued periodically or by its border.
+/// (u + du.d, v + dv.d), in exemplar pixels, continued periodically or by its border. Pixel i covers
+/// [i, i + 1). u and v themselves lie in [0, width) and [0, height); up to whole periods, neighbours
+/// with equal du and dv that show one piece of the picture agree exactly at each other's points.
 struct TexelFrame {
     float u = 0.0F;
     float v = 0.0F;

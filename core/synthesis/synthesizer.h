@@ -1,8 +1,10 @@
 // Stage 3: exemplar + pyramid -> labels. Algorithms 2 and 3, and the re-synthesis of section 4.4.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/base/run_control.h"
@@ -19,26 +21,39 @@ enum class Orientation {
 
 struct SynthesisSettings {
     std::uint64_t seed = 1;
-    /// Exemplar pixels per voxel of the finest level. 1 keeps one pixel per voxel.
+    /// Exemplar pixels per voxel of the finest level, in (0, 64]. 1 keeps one pixel per voxel.
     double pixels_per_voxel = 1.0;
     Orientation orientation = Orientation::kVector;
     Vec3 direction = Vec3::UnitZ();  ///< with Orientation::kVector; any length but zero
     bool symmetric = false;          ///< with kVector: up and down are the same
-    double jitter = 0.05;            ///< share of voxels relabelled at random per coarse level, in [0, 1]
-    int candidates = 40;             ///< coherent and random together, in [1, 256]
-    int fine_random_candidates = 8;  ///< random ones on the two finest levels
-    int directions = 300;            ///< |Psi|; 26 gives the paper's set, otherwise a spiral on the sphere
-    int rotations = 1024;            ///< linear parts of Gamma per direction
-    int translations = 0;            ///< per axis; 0 = continuous; the paper: 16
-    int transported = 4;             ///< coherent candidates moved to the voxel's own best plane
-    double cone_deg = 25.0;          ///< random planes lie within this angle of the voxel's normal
-    double distortion_weight = 1.0;  ///< against colour energy per neighbour
-    double orientation_weight = 2.0;
-    double border_weight = 0.5;    ///< penalty of texels near the border of a picture that does not tile
-    bool normalize_energy = true;  ///< divide the colour sum by the number of neighbours
-    int coarse_passes = 8;     ///< passes per level, finest first: 1, 2, 4, ... up to this; 1 = the paper's single pass
-    bool random_start = true;  ///< else every voxel starts from label (0, 0) as in Algorithm 2
-    int start_level = -1;      ///< hidden from users: -1 picks it from the size of the shell
+    /// Length over which the field of directions is evened out, as a share of the object's longest
+    /// side, in [0, 1]; 0 is the naive projection of the paper.
+    double orientation_smoothing = 0.06;
+
+    int directions = 300;    ///< |Psi|, in [6, 4096]; 26 gives the paper's set, otherwise a spiral on the sphere
+    int rotations = 1024;    ///< linear parts of Gamma per direction, in [1, 4096]
+    int translations = 0;    ///< per axis, in [0, 1024]; 0 = continuous; the paper: 16
+    double cone_deg = 25.0;  ///< random planes lie within this angle of the voxel's normal, in [0, 90]
+
+    int candidates = 40;             ///< coherent, transported and random together, in [1, 256]
+    int fine_random_candidates = 8;  ///< most random ones on the two finest levels, in [0, 256]
+    int transported = 4;             ///< coherent ones moved to the voxel's own best plane, levels >= 2, in [0, 64]
+    bool count_repeated = false;     ///< neighbours that agree use up one candidate each, as in the paper
+
+    double distortion_weight = 1.0;   ///< of E_distortion, in [0, 100]
+    double orientation_weight = 2.0;  ///< of 1 - cos(angle to the field), in [0, 100]
+    double border_weight = 0.5;       ///< of texels near the border of a picture that does not tile, in [0, 100]
+    double border_band = 0.05;        ///< what counts as near, as a share of the side, in [0, 0.4]
+    double feature_weight = 1.0;      ///< of f against one colour channel, in [0, 1]
+    bool normalize_energy = true;     ///< divide the colour sum by the number of neighbours
+
+    bool random_start = true;        ///< else every voxel starts from label (0, 0) as in Algorithm 2
+    int coarse_passes = 8;           ///< passes per level, finest first: 1, 2, 4, ... up to this, in [1, 64]
+    double jitter = 0.05;            ///< share of voxels relabelled at random per level, in [0, 1]
+    int jitter_from_level = 2;       ///< finer levels are left alone; 0 with the paper
+    std::optional<int> start_level;  ///< else the finest one on which the blurred exemplar is nearly flat
+
+    bool portable_code = false;  ///< for tests: no special instructions; labels are the same
 };
 
 /// The state of one pattern on one shell. Keeps references: pyramid and exemplar must outlive it.
@@ -67,6 +82,9 @@ class Synthesizer {
 
     /// Labels of the finest level.
     [[nodiscard]] const TexelFrames& frames() const;
+
+    /// Bytes held, without pyramid and exemplar.
+    [[nodiscard]] std::size_t memory_bytes() const;
 
     /// Sum over the finest voxels of the energy of section 4.2.2 (with the weights of the settings).
     [[nodiscard]] double energy() const;

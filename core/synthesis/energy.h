@@ -1,0 +1,60 @@
+// E of the paper, section 4.2.2, at one voxel, as an integer.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "core/synthesis/candidates.h"
+#include "core/synthesis/forced_solid.h"
+#include "core/synthesis/synthesis_problem.h"
+
+namespace fretwork {
+
+/// Energies count squared steps of 8-bit channels: a difference of one full channel is 255^2.
+using Energy = std::int64_t;
+inline constexpr Energy kEnergyUnit = 255 * 255;
+inline constexpr Energy kNoEnergy = std::numeric_limits<Energy>::max();
+
+/// Weighs candidates for one voxel against its neighbours as they are.
+///
+/// E_transition has two halves. In the first, what the neighbours expect at v does not depend on the
+/// candidate: with N neighbours, S the sum and Q the sum of squares of their expectations it is
+/// N |c|^2 - 2 c.S + Q for a candidate of colour c. Only the second needs a look-up per neighbour.
+class VoxelEnergy {
+  public:
+    VoxelEnergy(const SynthesisProblem& problem, const ProblemLevel& level) : problem_(problem), level_(level) {}
+
+    /// Moves to voxel v.
+    void look_at(VoxelIndex v, const Choices& choices);
+
+    [[nodiscard]] const NeighborView& view() const { return view_; }
+    [[nodiscard]] std::uint32_t neighbors() const { return count_; }
+    [[nodiscard]] const NeighborBlock& block(std::uint32_t i) const { return blocks_[i / 8]; }
+
+    /// A lower bound from what a draw already tells: first half, distortion and border.
+    [[nodiscard]] Energy bound(PlaneIndex plane, const TexelPosition& texel) const {
+        return first_half(texel) + weigh(distortion(plane) + border(texel));
+    }
+
+    /// The energy of a candidate, or some value above `limit` if it exceeds that.
+    [[nodiscard]] Energy of(const Candidate& candidate, Energy limit) const;
+
+    /// Divisor that turns the energy of this voxel into the units of the paper.
+    [[nodiscard]] double scale() const;
+
+  private:
+    [[nodiscard]] Energy first_half(const TexelPosition& texel) const;
+    [[nodiscard]] float distortion(PlaneIndex plane) const;
+    [[nodiscard]] float border(const TexelPosition& texel) const;
+    [[nodiscard]] float misorientation(const LinearPart& part) const;
+    [[nodiscard]] Energy weigh(float penalty) const;
+
+    const SynthesisProblem& problem_;
+    const ProblemLevel& level_;
+    VoxelIndex v_ = 0;
+    const NeighborBlock* blocks_ = nullptr;
+    std::uint32_t count_ = 0;
+    NeighborView view_;
+};
+
+}  // namespace fretwork

@@ -1,0 +1,48 @@
+// The inner loops of the transition energy, once for every machine and once for AVX2.
+#pragma once
+
+#include <cstdint>
+
+#include "core/synthesis/choice.h"
+#include "core/synthesis/neighbor_blocks.h"
+
+namespace fretwork {
+
+/// One level of the exemplar as the inner loops see it.
+struct TexelLevel {
+    const std::uint32_t* texels = nullptr;
+    std::uint32_t width = 1, height = 1;
+    int u_shift = 0, v_shift = 0;
+};
+
+/// What the neighbours of one voxel have chosen and what they expect the voxel to look like.
+struct NeighborView {
+    alignas(32) std::uint32_t color[kMaxNeighbors];  ///< I(M(w, l_w))
+    alignas(32) LinearIndex linear[kMaxNeighbors];
+    alignas(32) std::uint32_t origin[kMaxNeighbors];
+    std::int32_t expected_sum[4] = {};  ///< sum over w of I(M(v, l_w)), per channel
+    std::int32_t expected_squares = 0;  ///< sum over w of |I(M(v, l_w))|^2
+};
+
+/// The two halves of E_transition in section 4.2.2, in squared steps of 8-bit channels. Both sets
+/// below give the same integers.
+struct MismatchKernels {
+    /// Gathers the view of a voxel. Lanes past `count` hold anything.
+    void (*view_neighbors)(const TexelLevel& level, const Choice* choices, const NeighborBlock* blocks,
+                           std::uint32_t count, NeighborView& view);
+
+    /// sum over w of |I(M(w, k)) - I(M(w, l_w))|^2 for the candidate k that shows `texel` at the voxel;
+    /// gives up with some value above `limit` once the sum exceeds it.
+    std::int32_t (*disagreement)(const TexelLevel& level, const NeighborBlock* blocks, std::uint32_t count,
+                                 const NeighborView& view, const TexelPosition& texel, const LinearPart& part,
+                                 std::int32_t limit);
+};
+
+extern const MismatchKernels kPortableMismatch;
+extern const MismatchKernels kAvx2Mismatch;
+
+/// The fastest set this machine can run.
+const MismatchKernels& best_mismatch_kernels();
+bool machine_has_avx2();
+
+}  // namespace fretwork

@@ -1,0 +1,141 @@
+#include "core/synthesis/mismatch.h"
+
+#if defined(__x86_64__)
+
+#include <immintrin.h>
+
+// Only these functions may use AVX2; they are called after a look at the processor.
+#define FRETWORK_AVX2 __attribute__((target("avx2")))
+#define FRETWORK_AVX2_INLINE __attribute__((target("avx2"), always_inline)) inline
+
+namespace fretwork {
+namespace {
+
+FRETWORK_AVX2_INLINE __m256i load(const void* p) {
+    return _mm256_load_si256(static_cast<const __m256i*>(p));
+}
+
+/// Constants of a level in registers.
+struct Fetcher {
+    const int* texels;
+    __m256i size;    // width and height in the halves of each lane
+    __m256i stride;  // 1 and width
+    __m128i u_shift, v_shift;
+};
+
+FRETWORK_AVX2_INLINE Fetcher make_fetcher(const TexelLevel& level) {
+    const auto pair = [](std::uint32_t low, std::uint32_t high) { return static_cast<int>(low | high << 16); };
+    return {reinterpret_cast<const int*>(level.texels), _mm256_set1_epi32(pair(level.width, level.height)),
+            _mm256_set1_epi32(pair(1, level.width)), _mm_cvtsi32_si128(level.u_shift),
+            _mm_cvtsi32_si128(level.v_shift)};
+}
+
+/// Eight texels at (u, v) + linear part * offset.
+FRETWORK_AVX2_INLINE __m256i fetch(const Fetcher& f, __m256i u, __m256i v, __m256i u_xy, __m256i v_xy, __m256i uv_z,
+                                   __m256i xy, __m256i z) {
+    const __m256i du = _mm256_add_epi32(_mm256_madd_epi16(u_xy, xy), _mm256_madd_epi16(uv_z, z));
+    const __m256i dv = _mm256_add_epi32(_mm256_madd_epi16(v_xy, xy), _mm256_madd_epi16(uv_z, _mm256_slli_epi32(z, 16)));
+    const __m256i at_u = _mm256_add_epi32(u, _mm256_sll_epi32(du, f.u_shift));
+    const __m256i at_v = _mm256_add_epi32(v, _mm256_sll_epi32(dv, f.v_shift));
+    const __m256i shares = _mm256_blend_epi16(_mm256_srli_epi32(at_u, 16), at_v, 0xAA);
+    const __m256i column_row = _mm256_mulhi_epu16(shares, f.size);
+    return _mm256_i32gather_epi32(f.texels, _mm256_madd_epi16(column_row, f.stride), 4);
+}
+
+FRETWORK_AVX2_INLINE std::int32_t add_lanes(__m256i x) {
+    __m128i s = _mm_add_epi32(_mm256_castsi256_si128(x), _mm256_extracti128_si256(x, 1));
+    s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0x4E));
+    s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0xB1));
+    return _mm_cvtsi128_si32(s);
+}
+
+/// Sums of squares of the 8-bit channels, spread over the lanes.
+FRETWORK_AVX2_INLINE __m256i squares(__m256i bytes) {
+    const __m256i low = _mm256_unpacklo_epi8(bytes, _mm256_setzero_si256());
+    const __m256i high = _mm256_unpackhi_epi8(bytes, _mm256_setzero_si256());
+    return _mm256_add_epi32(_mm256_madd_epi16(low, low), _mm256_madd_epi16(high, high));
+}
+
+/// All ones in the first `lanes` lanes.
+FRETWORK_AVX2_INLINE __m256i first_lanes(std::uint32_t lanes) {
+    return _mm256_cmpgt_epi32(_mm256_set1_epi32(static_cast<int>(lanes)), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+}
+
+/// Eight choices of eight fields -> eight fields of eight choices.
+FRETWORK_AVX2_INLINE void transpose(__m256i (&r)[8]) {
+    __m256i s[8], t[8];
+    for (int i = 0; i < 4; ++i) {
+        s[2 * i] = _mm256_unpacklo_epi32(r[2 * i], r[2 * i + 1]);
+        s[2 * i + 1] = _mm256_unpackhi_epi32(r[2 * i], r[2 * i + 1]);
+    }
+    for (int i = 0; i < 2; ++i) {
+        t[4 * i] = _mm256_unpacklo_epi64(s[4 * i], s[4 * i + 2]);
+        t[4 * i + 1] = _mm256_unpackhi_epi64(s[4 * i], s[4 * i + 2]);
+        t[4 * i + 2] = _mm256_unpacklo_epi64(s[4 * i + 1], s[4 * i + 3]);
+        t[4 * i + 3] = _mm256_unpackhi_epi64(s[4 * i + 1], s[4 * i + 3]);
+    }
+    for (int i = 0; i < 4; ++i) {
+        r[i] = _mm256_permute2x128_si256(t[i], t[i + 4], 0x20);
+        r[i + 4] = _mm256_permute2x128_si256(t[i], t[i + 4], 0x31);
+    }
+}
+
+FRETWORK_AVX2 void view_neighbors(const TexelLevel& level, const Choice* choices, const NeighborBlock* blocks,
+                                  std::uint32_t count, NeighborView& view) {
+    static_assert(sizeof(Choice) == 32);
+    const Fetcher f = make_fetcher(level);
+    const __m256i zero = _mm256_setzero_si256();
+    __m256i channel_sums = zero, square_sums = zero;
+    for (std::uint32_t i = 0; i < count; i += 8) {
+        const NeighborBlock& b = blocks[i / 8];
+        __m256i r[8];
+        for (int lane = 0; lane < 8; ++lane) r[lane] = load(choices + b.neighbor[lane]);
+        transpose(r);
+        _mm256_store_si256(reinterpret_cast<__m256i*>(view.color + i), r[5]);
+        _mm256_store_si256(reinterpret_cast<__m256i*>(view.linear + i), r[6]);
+        _mm256_store_si256(reinterpret_cast<__m256i*>(view.origin + i), r[7]);
+        __m256i expected = fetch(f, r[0], r[1], r[2], r[3], r[4], load(b.back_xy), load(b.back_z));
+        if (count - i < 8) expected = _mm256_and_si256(expected, first_lanes(count - i));
+        square_sums = _mm256_add_epi32(square_sums, squares(expected));
+        // 31 blocks of twice 255 stay below 2^16.
+        channel_sums = _mm256_add_epi16(
+            channel_sums, _mm256_add_epi16(_mm256_unpacklo_epi8(expected, zero), _mm256_unpackhi_epi8(expected, zero)));
+    }
+    alignas(32) std::uint16_t sums[16];
+    _mm256_store_si256(reinterpret_cast<__m256i*>(sums), channel_sums);
+    for (int c = 0; c < 4; ++c) view.expected_sum[c] = sums[c] + sums[c + 4] + sums[c + 8] + sums[c + 12];
+    view.expected_squares = add_lanes(square_sums);
+}
+
+FRETWORK_AVX2 std::int32_t disagreement(const TexelLevel& level, const NeighborBlock* blocks, std::uint32_t count,
+                                        const NeighborView& view, const TexelPosition& texel, const LinearPart& part,
+                                        std::int32_t limit) {
+    const Fetcher f = make_fetcher(level);
+    const __m256i u = _mm256_set1_epi32(static_cast<int>(texel.u)), v = _mm256_set1_epi32(static_cast<int>(texel.v));
+    const __m256i u_xy = _mm256_set1_epi32(part.u_xy), v_xy = _mm256_set1_epi32(part.v_xy);
+    const __m256i uv_z = _mm256_set1_epi32(part.uv_z);
+    std::int32_t sum = 0;
+    for (std::uint32_t i = 0; i < count && sum <= limit; i += 8) {
+        const NeighborBlock& b = blocks[i / 8];
+        const __m256i seen = fetch(f, u, v, u_xy, v_xy, uv_z, load(b.out_xy), load(b.out_z));
+        const __m256i wanted = load(view.color + i);
+        __m256i difference = _mm256_sub_epi8(_mm256_max_epu8(seen, wanted), _mm256_min_epu8(seen, wanted));
+        if (count - i < 8) difference = _mm256_and_si256(difference, first_lanes(count - i));
+        sum += add_lanes(squares(difference));
+    }
+    return sum;
+}
+
+}  // namespace
+
+const MismatchKernels kAvx2Mismatch{view_neighbors, disagreement};
+
+}  // namespace fretwork
+
+#else
+
+namespace fretwork {
+const MismatchKernels kAvx2Mismatch = kPortableMismatch;
+}  // namespace fretwork
+
+#endif

@@ -1,0 +1,72 @@
+#include "core/synthesis/mismatch.h"
+
+namespace fretwork {
+namespace {
+
+std::uint32_t fetch(const TexelLevel& level, const TexelPosition& t) {
+    const std::uint32_t column = ((t.u >> 16) * level.width) >> 16, row = ((t.v >> 16) * level.height) >> 16;
+    return level.texels[column + row * level.width];
+}
+
+TexelPosition moved(const TexelLevel& level, const TexelPosition& texel, const LinearPart& part, std::int32_t xy,
+                    std::int32_t z) {
+    const std::int32_t x = low16(xy), y = high16(xy), height = low16(z);
+    const std::int32_t u = low16(part.u_xy) * x + high16(part.u_xy) * y + low16(part.uv_z) * height;
+    const std::int32_t v = low16(part.v_xy) * x + high16(part.v_xy) * y + high16(part.uv_z) * height;
+    return {texel.u + (static_cast<std::uint32_t>(u) << level.u_shift),
+            texel.v + (static_cast<std::uint32_t>(v) << level.v_shift)};
+}
+
+void view_neighbors(const TexelLevel& level, const Choice* choices, const NeighborBlock* blocks, std::uint32_t count,
+                    NeighborView& view) {
+    std::int32_t sum[4] = {}, squares = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const NeighborBlock& b = blocks[i / 8];
+        const Choice& c = choices[b.neighbor[i % 8]];
+        view.color[i] = c.color;
+        view.linear[i] = c.label.linear;
+        view.origin[i] = c.label.origin;
+        const std::uint32_t expected = fetch(level, moved(level, c.texel, c.part, b.back_xy[i % 8], b.back_z[i % 8]));
+        for (int channel = 0; channel < 4; ++channel) {
+            const auto value = static_cast<std::int32_t>(expected >> (8 * channel) & 0xFFu);
+            sum[channel] += value;
+            squares += value * value;
+        }
+    }
+    for (int channel = 0; channel < 4; ++channel) view.expected_sum[channel] = sum[channel];
+    view.expected_squares = squares;
+}
+
+std::int32_t disagreement(const TexelLevel& level, const NeighborBlock* blocks, std::uint32_t count,
+                          const NeighborView& view, const TexelPosition& texel, const LinearPart& part,
+                          std::int32_t limit) {
+    std::int32_t sum = 0;
+    for (std::uint32_t i = 0; i < count && sum <= limit; ++i) {
+        const NeighborBlock& b = blocks[i / 8];
+        const std::uint32_t seen = fetch(level, moved(level, texel, part, b.out_xy[i % 8], b.out_z[i % 8]));
+        for (int channel = 0; channel < 4; ++channel) {
+            const std::int32_t difference = static_cast<std::int32_t>(seen >> (8 * channel) & 0xFFu) -
+                                            static_cast<std::int32_t>(view.color[i] >> (8 * channel) & 0xFFu);
+            sum += difference * difference;
+        }
+    }
+    return sum;
+}
+
+}  // namespace
+
+const MismatchKernels kPortableMismatch{view_neighbors, disagreement};
+
+bool machine_has_avx2() {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("avx2") != 0;
+#else
+    return false;
+#endif
+}
+
+const MismatchKernels& best_mismatch_kernels() {
+    return machine_has_avx2() ? kAvx2Mismatch : kPortableMismatch;
+}
+
+}  // namespace fretwork

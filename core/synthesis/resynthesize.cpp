@@ -1,0 +1,119 @@
+#include "core/synthesis/resynthesize.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/synthesis/optimize.h"
+#include "core/synthesis/passes.h"
+
+namespace fretwork {
+namespace {
+
+void sort_unique(std::vector<VoxelIndex>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+struct PointSum {
+    std::int64_t x = 0, y = 0, z = 0, count = 0;
+};
+
+std::int64_t squared_distance(const FixedPoint& p, const PointSum& sum) {
+    const std::int64_t dx = p.x - sum.x / sum.count, dy = p.y - sum.y / sum.count, dz = p.z - sum.z / sum.count;
+    return dx * dx + dy * dy + dz * dz;
+}
+
+/// Tags the parents of tagged voxels, and gives each the most central of the forced points below it.
+/// All forced points below a local voxel are local, because the lists are whole subtrees.
+std::vector<ForcedSolid> tag_parents(const SynthesisProblem& problem, const std::vector<std::uint8_t>& forced_solid,
+                                     const LocalVoxels& local) {
+    std::vector<ForcedSolid> tags(local.size());
+    const ProblemLevel& finest = problem.levels[0];
+    std::vector<VoxelIndex> forced;  // finest voxels
+    for (const VoxelIndex v : local[0])
+        if (forced_solid[v] != 0) forced.push_back(v);
+
+    std::vector<VoxelIndex> ancestor = forced;
+    for (std::size_t l = 0; l < local.size(); ++l) {
+        const ProblemLevel& level = problem.levels[l];
+        if (l > 0)
+            for (VoxelIndex& a : ancestor) a = problem.levels[l - 1].shell->parent[a];
+        tags[l].forced.assign(level.size(), 0);
+        tags[l].probe.resize(level.size());
+        std::vector<PointSum> sum(level.size());
+        for (std::size_t i = 0; i < forced.size(); ++i) {
+            const FixedPoint& p = finest.points[forced[i]];
+            PointSum& s = sum[ancestor[i]];
+            s = {s.x + p.x, s.y + p.y, s.z + p.z, s.count + 1};
+        }
+        for (std::size_t i = 0; i < forced.size(); ++i) {
+            const VoxelIndex a = ancestor[i];
+            const FixedPoint& p = finest.points[forced[i]];
+            if (tags[l].forced[a] == 0 || squared_distance(p, sum[a]) < squared_distance(tags[l].probe[a], sum[a]))
+                tags[l].probe[a] = p;
+            tags[l].forced[a] = 1;
+        }
+    }
+    return tags;
+}
+
+/// Children of voxels whose label changed take over the new one.
+void upsample_changed(const SynthesisProblem& problem, std::size_t l, const std::vector<VoxelIndex>& changed_parents,
+                      std::vector<Choices>& all) {
+    const ProblemLevel& level = problem.levels[l];
+    const PyramidLevel& parents = *problem.levels[l + 1].shell;
+    for (const VoxelIndex parent : changed_parents)
+        for (std::uint32_t i = parents.first_child[parent]; i < parents.first_child[parent + 1]; ++i) {
+            const VoxelIndex child = parents.children[i];
+            const Choice& from = all[l + 1][parent];
+            all[l][child] = problem.make_choice(level, from.label, from.part, level.points[child]);
+        }
+}
+
+}  // namespace
+
+LocalVoxels voxels_around(const SynthesisProblem& problem, const std::vector<VoxelIndex>& changed, int coarsest) {
+    const auto top = static_cast<std::size_t>(coarsest);
+    LocalVoxels local(top + 1);
+    local[top] = changed;
+    for (std::size_t l = 0; l < top; ++l)
+        for (VoxelIndex& v : local[top]) v = problem.levels[l].shell->parent[v];
+    sort_unique(local[top]);
+    for (std::size_t l = top; l-- > 0;) {
+        const PyramidLevel& parents = *problem.levels[l + 1].shell;
+        for (const VoxelIndex p : local[l + 1])
+            local[l].insert(local[l].end(), parents.children.begin() + parents.first_child[p],
+                            parents.children.begin() + parents.first_child[p + 1]);
+        std::sort(local[l].begin(), local[l].end());
+    }
+    return local;
+}
+
+std::vector<VoxelIndex> update_locally(const SynthesisProblem& problem, const std::vector<std::uint8_t>& forced_solid,
+                                       const LocalVoxels& local, std::uint32_t epoch, std::vector<Choices>& all,
+                                       const RunControl& run) {
+    const std::vector<ForcedSolid> tags = tag_parents(problem, forced_solid, local);
+    std::vector<Label> original;
+    for (const VoxelIndex v : local[0]) original.push_back(all[0][v].label);
+
+    std::vector<VoxelIndex> changed;
+    for (std::size_t l = local.size(); l-- > 0;) {
+        const ProblemLevel& level = problem.levels[l];
+        std::vector<Label> before;
+        for (const VoxelIndex v : local[l]) before.push_back(all[l][v].label);
+        if (l + 1 < local.size()) upsample_changed(problem, l, changed, all);
+        const Subpasses subpasses = split_into_subpasses(level.shell->coords, local[l]);
+        const int passes = std::max(kLocalPasses, passes_on_level(problem.settings, level.index));
+        for (int pass = 0; pass < passes; ++pass)
+            optimize_pass(problem, level, subpasses, tags[l], epoch_of(level.index, pass, epoch), all[l], run);
+        changed.clear();
+        for (std::size_t i = 0; i < local[l].size(); ++i)
+            if (all[l][local[l][i]].label != before[i]) changed.push_back(local[l][i]);
+    }
+    changed.clear();
+    for (std::size_t i = 0; i < local[0].size(); ++i)
+        if (all[0][local[0][i]].label != original[i]) changed.push_back(local[0][i]);
+    return changed;
+}
+
+}  // namespace fretwork

@@ -1,0 +1,19 @@
+// Named starting points for the settings of the synthesis.
+#pragma once
+
+#include <string_view>
+
+#include "core/synthesis/synthesizer.h"
+
+namespace fretwork {
+
+enum class SynthesisPreset {
+    kDraft,    ///< about twice as fast as the default, seams now and then
+    kDefault,  ///< the best looks for their time
+    kFine,     ///< slower, for final results
+    kPaper,    ///< the parameters of section 6.1 of the paper, no more and no less
+};
+
+SynthesisSettings synthesis_settings(SynthesisPreset preset);
+
+}  // namespace fretwork
