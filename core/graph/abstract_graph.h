@@ -12,6 +12,7 @@ namespace fretwork {
 
 using SampleIndex = std::uint32_t;
 using EdgeIndex = std::uint32_t;
+inline constexpr SampleIndex kNoSample = 0xffffffffu;
 
 /// rho(f) of the paper.
 enum class EdgeState : std::uint8_t {
@@ -32,7 +33,7 @@ struct AbstractGraph {
     std::vector<std::uint32_t> first_path;  ///< compressed rows into `path`, one per edge
     std::vector<VoxelIndex> path;           ///< from sample a to sample b, both included, each step a link of G_surface
     /// Sample whose tree each voxel of the shell belongs to, over solid first and then over all of
-    /// G_surface. Undefined on components of the shell without a sample.
+    /// G_surface. kNoSample on components of the shell without a sample.
     std::vector<SampleIndex> owner;
 
     [[nodiscard]] std::span<const VoxelIndex> voxel_path(EdgeIndex e) const {

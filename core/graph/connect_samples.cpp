@@ -80,7 +80,10 @@ AbstractGraph connect_samples(const Adjacency& graph, const SolidStates& solid, 
 
     parallel_for(result.edges.size(), 256,
                  [&](std::size_t e) { measure_path(graph, solid, result, static_cast<EdgeIndex>(e)); });
-    result.owner = grower.take().owner;
+    ShortestPathForest forest = grower.take();
+    result.owner = std::move(forest.owner);
+    for (std::size_t v = 0; v < result.owner.size(); ++v)
+        if (forest.distance[v] == kUnreached) result.owner[v] = kNoSample;
     return result;
 }
 

@@ -1,0 +1,55 @@
+// Stage 5: the simplified beam geometry of one abstract graph, ready to be solved again and again.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/base/run_control.h"
+#include "core/fem/force_profile.h"
+#include "core/fem/material.h"
+#include "core/graph/abstract_graph.h"
+
+namespace fretwork {
+
+struct BeamModelSettings {
+    double thickness_mm = 2.0;                 ///< final wall
+    double soft_factor = 1e-3;                 ///< rho_min, of empty edges
+    double bridge_half_width_voxels = 3.0;     ///< of an edge that is empty now, once it is solid: r_pattern
+    double widest_half_width_voxels = 1000.0;  ///< bound on the measured width of the pattern
+};
+
+/// Section 5.2.1. Wedges are always solid, beams have stiffness 1 or rho_min times their own. A beam's
+/// own stiffness is that of its hexahedron times the width of the pattern along its path over the
+/// width of the hexahedron, so that thin strands are as weak as they are.
+class BeamModel {
+  public:
+    /// Builds geometry and element matrices, orders the equations. References must outlive the model.
+    /// Load cases with the same supports share a factorisation.
+    /// \throws InvalidSetting  material out of range (`solid_elements.h`).
+    /// \throws SolverFailure   no memory.
+    BeamModel(const SurfaceVoxels& shell, const SolidStates& solid, const AbstractGraph& graph,
+              const ForceProfile& profile, const Material& material, const BeamModelSettings& settings,
+              const RunControl& run = {});
+    ~BeamModel();
+    BeamModel(BeamModel&&) noexcept;
+    BeamModel& operator=(BeamModel&&) noexcept;
+
+    /// Per edge the largest |s1| + |s2| + |s3| over its Gauss points and over all load cases, in Pa. The
+    /// stress is that of the full material under the strain found (sigma = E B u), for empty edges too:
+    /// what they would feel if they were not there to carry anything.
+    /// \param states  one per edge; need not be those of the graph
+    /// Cost  one factorisation per set of supports, one solution per load case.
+    /// \throws SolverFailure  the equations are singular.
+    std::vector<double> edge_scores_pa(std::span<const EdgeState> states, const RunControl& run = {});
+
+    [[nodiscard]] std::size_t degrees_of_freedom() const;
+    [[nodiscard]] std::size_t folded_beams() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fretwork
