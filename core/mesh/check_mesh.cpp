@@ -23,7 +23,7 @@ bool has_area(const TriangleMesh& mesh, const Triangle& t) {
 }  // namespace
 
 void check_mesh(const TriangleMesh& mesh, const char* caller, ZeroArea zero_area) {
-    constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() - 1;
+    constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() / 3 - 1;  // half-edges are counted too
     if (mesh.triangles.empty()) refuse(caller, "the mesh has no triangles; at least one is needed");
     if (mesh.triangles.size() > most || mesh.positions_mm.size() > most)
         refuse(caller, "the mesh has " + std::to_string(mesh.positions_mm.size()) + " vertices and " +
