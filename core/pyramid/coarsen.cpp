@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/base/parallel.h"
+#include "core/shell/links.h"
 
 namespace fretwork {
 namespace {
@@ -197,7 +198,12 @@ WeightedLevel coarsen(WeightedLevel& fine, const RunControl& run) {
     WeightedLevel coarse;
     join_layers(group_layers(fine.level, run), fine.level, coarse.level);
     average_children(fine, coarse);
-    coarse.level.adjacency = link_parents(fine.level, coarse.level, run);
+    const Adjacency of_children = link_parents(fine.level, coarse.level, run);
+    VoxelGrid grid;
+    for (std::size_t k = 0; k < 3; ++k)
+        for (const VoxelCoord& c : coarse.level.coords) grid.extent[k] = std::max(grid.extent[k], c[k] + 1);
+    coarse.level.adjacency =
+        link_around_common_neighbors(grid, coarse.level.coords, coarse.level.normals, of_children, run);
     return coarse;
 }
 

@@ -17,7 +17,8 @@ struct WeightedLevel {
 
 /// Children of one cell of the coarser level that hang together by links inside this cell make one entry.
 /// Position and normal are means over the children, weighted by area; where the normals cancel, the child with
-/// the largest area decides. Entries are linked when children of theirs are.
+/// the largest area decides. Entries are linked when children of theirs are, or around a common neighbour as in
+/// the shell.
 ///
 /// Sets `parent` of `fine` and everything but `neighborhoods` of the result. Linear.
 WeightedLevel coarsen(WeightedLevel& fine, const RunControl& run);

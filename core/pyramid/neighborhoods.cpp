@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -127,6 +128,7 @@ class Unfolder {
   public:
     Unfolder(const PyramidLevel& level, std::span<const float> cosine) : level_(level), cosine_(cosine) {}
 
+    /// For pairs on a smooth piece of the surface.
     [[nodiscard]] Vec3f over_smooth(VoxelIndex v, VoxelIndex w) const {
         // Chord 2 sin(a / 2) against arc a, where the normals turn by a: their ratio is 1 + (1 - cos a) / 12
         // up to a^4.
@@ -134,25 +136,56 @@ class Unfolder {
         return lay_flat(level_.positions[w] - level_.positions[v], level_.normals[v]) * arc;
     }
 
+    /// For all others.
     [[nodiscard]] Vec3f over_crease(VoxelIndex v, VoxelIndex w) const {
-        const Adjacency& links = level_.adjacency;
-        VoxelIndex between = v;
-        float best = kTurningRoundCosine;
-        if (const auto direct = cosine_between(v, w); direct >= best) best = direct;
-        for (std::uint32_t e = links.first[v]; e < links.first[v + 1]; ++e) {
-            const float cosine = std::min(cosine_[e], cosine_between(links.neighbor[e], w));
-            if (cosine <= best) continue;
-            best = cosine;
-            between = links.neighbor[e];
-        }
-        const Vec3f& n = level_.normals[v];
-        const Vec3f& middle = level_.positions[between];
-        if (between == v) return lay_flat(level_.positions[w] - middle, n);
-        const Vec3f second = lay_flat(level_.positions[w] - middle, level_.normals[between]);
-        return lay_flat(middle - level_.positions[v], n) + carry(second, level_.normals[between], n);
+        // A rounded edge is followed in two steps; a sharp one is a hinge.
+        const Way way = least_bent_way(v, w);
+        if (way.cosine < kSmoothCosine)
+            if (const std::optional<Vec3f> hinged = around_hinge(v, w)) return *hinged;
+        if (way.between == v) return one_step(v, w);
+        return one_step(v, way.between) +
+               carry(one_step(way.between, w), level_.normals[way.between], level_.normals[v]);
     }
 
   private:
+    [[nodiscard]] Vec3f one_step(VoxelIndex v, VoxelIndex w) const {
+        if (level_.normals[v].dot(level_.normals[w]) < kSmoothCosine)
+            if (const std::optional<Vec3f> hinged = around_hinge(v, w)) return *hinged;
+        return over_smooth(v, w);
+    }
+
+    // Takes the surface as the two tangent planes, folded along the line where they meet, and turns w about this
+    // line into the plane of v. Exact on two flat faces. Nothing where the line does not lie between the two.
+    [[nodiscard]] std::optional<Vec3f> around_hinge(VoxelIndex v, VoxelIndex w) const {
+        const Vec3f& n = level_.normals[v];
+        const Vec3f& m = level_.normals[w];
+        const float cosine = n.dot(m);
+        if (cosine >= kSmoothCosine || cosine < kTurningRoundCosine) return std::nullopt;
+        const Vec3f line = n.cross(m).normalized();
+        const Vec3f across_v = line.cross(n);  // in the plane of v, square to the line
+        const Vec3f across_w = line.cross(m);
+        const Vec3f way = level_.positions[w] - level_.positions[v];
+        const float to_line = m.dot(way) / m.dot(across_v);
+        const float from_line = n.dot(way) / n.dot(across_w);
+        if (to_line * from_line < 0.0F) return std::nullopt;
+        return (to_line + from_line) * across_v + line.dot(way) * line;
+    }
+
+    struct Way {
+        VoxelIndex between;  // entry in the middle of two steps, or where they start for the direct link
+        float cosine;        // the smaller of the steps
+    };
+
+    [[nodiscard]] Way least_bent_way(VoxelIndex v, VoxelIndex w) const {
+        const Adjacency& links = level_.adjacency;
+        Way best = {v, cosine_between(v, w)};
+        for (std::uint32_t e = links.first[v]; e < links.first[v + 1]; ++e) {
+            const float cosine = std::min(cosine_[e], cosine_between(links.neighbor[e], w));
+            if (cosine > best.cosine) best = {links.neighbor[e], cosine};
+        }
+        return best;
+    }
+
     // Cosine of the link between the two, -1 where there is none.
     [[nodiscard]] float cosine_between(VoxelIndex v, VoxelIndex w) const {
         const auto row = level_.adjacency.of(v);

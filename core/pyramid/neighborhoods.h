@@ -13,8 +13,9 @@ inline constexpr float kTurningRoundCosine = -0.2F;
 /// Needs coords, positions, normals and adjacency of `level`.
 ///
 /// Offsets  where the two normals and those on the way between them are alike, w - v is turned into v's
-///          tangent plane and stretched from the chord to the arc. Else the way over the entry between v and w
-///          that bends least is unfolded step by step: each step is turned into the plane it starts from, and
+///          tangent plane and stretched from the chord to the arc. Around a sharp edge, w is turned into the plane
+///          of v about the line where the two tangent planes meet, which is exact between flat faces. Around a
+///          rounded edge, the way over the entry between v and w that bends least is unfolded in two steps, and
 ///          the second one carried back to v by the rotation that takes one normal to the other.
 /// Cost     linear in the pairs, about 39 per entry.
 Neighborhoods find_neighborhoods(const PyramidLevel& level, const RunControl& run);

@@ -25,27 +25,29 @@ struct Layer {
     std::vector<std::uint32_t> triangles;
 };
 
-// Mean normal of the patches, or of the largest side where two sides cancel.
+// Mean normal of the patches, or of the larger of two sides that cancel.
 Vec3 mean_normal(std::span<const Patch* const> patches, std::span<const Vec3> normal_of) {
     // Below this share of the area, what is left of the sum says nothing about a side.
     constexpr double kCancelled = 1e-3;
     Vec3 sum = Vec3::Zero();
     double area = 0.0;
-    std::size_t largest = 0;
     for (std::size_t i = 0; i < patches.size(); ++i) {
         sum += static_cast<double>(patches[i]->area) * normal_of[i];
         area += static_cast<double>(patches[i]->area);
-        if (patches[i]->area > patches[largest]->area) largest = i;
     }
     if (sum.norm() > kCancelled * area) return sum.normalized();
-    Vec3 side = Vec3::Zero();
+
+    // Sides are told apart by the first normal there is. Where all areas are zero (the cell is touched at a point
+    // or along an edge), every patch counts alike.
+    const auto first =
+        std::find_if(normal_of.begin(), normal_of.end(), [](const Vec3& n) { return n != Vec3::Zero(); });
+    if (first == normal_of.end()) return Vec3::Zero();
+    Vec3 side[2] = {Vec3::Zero(), Vec3::Zero()};
     for (std::size_t i = 0; i < patches.size(); ++i)
-        if (normal_of[i].dot(normal_of[largest]) > 0.0) side += static_cast<double>(patches[i]->area) * normal_of[i];
-    if (side.norm() > 0.0) return side.normalized();
-    // No area at all: the cell is touched at a point or along an edge.
-    for (const Vec3& n : normal_of)
-        if (normal_of[0].dot(n) >= 0.0) side += n;
-    return side.norm() > 0.0 ? side.normalized() : Vec3::Zero();
+        side[first->dot(normal_of[i]) < 0.0] +=
+            (area > 0.0 ? static_cast<double>(patches[i]->area) : 1.0) * normal_of[i];
+    // Two equal sides differ by the rounding of their areas; then the first one decides.
+    return (side[0].norm() >= (1.0 - 1e-5) * side[1].norm() ? side[0] : side[1]).normalized();
 }
 
 class LayerBuilder {

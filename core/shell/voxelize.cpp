@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "core/base/error.h"
@@ -16,6 +17,15 @@ namespace {
 
 constexpr int kMinResolution = 4;
 constexpr int kMaxResolution = 2048;
+// Between these, areas of voxels are ordinary numbers in single precision.
+constexpr double kMinExtentMm = 1e-9;
+constexpr double kMaxExtentMm = 1e15;
+
+std::string as_text(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
 
 void check_settings(const VoxelizeSettings& settings) {
     if (settings.resolution < kMinResolution || settings.resolution > kMaxResolution)
@@ -50,9 +60,9 @@ VoxelGrid make_grid(const TriangleMesh& mesh, int resolution) {
     const Vec3 size = high - low;
     VoxelGrid grid;
     grid.voxel_mm = size.maxCoeff() / resolution;
-    if (!std::isnormal(grid.voxel_mm) || !std::isnormal(1.0 / grid.voxel_mm))
-        throw InvalidInput("voxelize: the longest side of the mesh measures " + std::to_string(size.maxCoeff()) +
-                           " mm, expected a finite extent above zero");
+    if (!(size.maxCoeff() >= kMinExtentMm && size.maxCoeff() <= kMaxExtentMm))
+        throw InvalidInput("voxelize: the longest side of the mesh measures " + as_text(size.maxCoeff()) +
+                           " mm, expected " + as_text(kMinExtentMm) + " to " + as_text(kMaxExtentMm));
     for (int k = 0; k < 3; ++k) {
         const int cells = static_cast<int>(std::lround(size[k] / grid.voxel_mm)) + 1;
         grid.extent[static_cast<std::size_t>(k)] = cells;

@@ -33,7 +33,7 @@ struct VoxelizeSettings {
 /// \param mesh  needs neither to be closed nor manifold; vertices are told apart by index (weld
 ///              soups first, `core/mesh/repair.h`). Triangles of zero area add no normal.
 /// \throws InvalidInput    no triangle; an index past the end; a coordinate that is not finite; a
-///                         surface of zero extent.
+///                         longest side outside [1e-9, 1e15] mm.
 /// \throws InvalidSetting  `resolution` out of range.
 /// \throws Cancelled       `run` asked to stop.
 SurfaceVoxels voxelize(const TriangleMesh& mesh, const VoxelizeSettings& settings = {}, const RunControl& run = {});

@@ -1,0 +1,480 @@
+#include "core/shell/voxelize.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/shell/components.h"
+#include "support/make_meshes.h"
+
+namespace fretwork {
+namespace {
+
+using namespace testing;
+
+VoxelCoord voxel_holding(const VoxelGrid& grid, const Vec3& p_mm) {
+    const Vec3 q = (p_mm - grid.origin_mm) / grid.voxel_mm;
+    return {static_cast<int>(std::floor(q[0])), static_cast<int>(std::floor(q[1])), static_cast<int>(std::floor(q[2]))};
+}
+
+// Components of the mesh over shared edges, by the plainest means.
+std::size_t count_mesh_components(const TriangleMesh& mesh) {
+    std::vector<std::size_t> group(mesh.triangles.size());
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> first_user;
+    const auto root = [&](std::size_t t) {
+        while (group[t] != t) t = group[t];
+        return t;
+    };
+    for (std::size_t t = 0; t < group.size(); ++t) group[t] = t;
+    for (std::size_t t = 0; t < group.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto edge = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+            const auto [user, added] = first_user.insert({edge, t});
+            if (!added) group[root(t)] = root(user->second);
+        }
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < group.size(); ++t) count += group[t] == t;
+    return count;
+}
+
+struct NamedMesh {
+    std::string name;
+    TriangleMesh mesh;
+};
+
+std::vector<NamedMesh> assorted_meshes() {
+    return {{"sphere", make_icosphere(10, 3)},
+            {"torus", make_torus(10, 3, 40, 20)},
+            {"box of twelve triangles", rotated(make_box({0, 0, 0}, {10, 7, 5}), Vec3(1, 2, 3).normalized(), 0.7)},
+            {"bracket", make_bracket()},
+            {"frame", make_frame(20, 3)},
+            {"thin plate", make_thin_plate(20, 15, 0.3)},
+            {"thin tube", make_tube(10, 9.8, 12, 64)},
+            {"open bowl", make_open_bowl(10, 12, 24)},
+            {"linked tori", make_linked_tori(10, 3)},
+            {"nested spheres", make_nested_spheres(10, 9)},
+            {"two boxes on one edge", make_boxes_sharing_edge()},
+            {"pinched vertex", make_pinched_vertex()},
+            {"three fins", make_three_fins()},
+            {"degenerate triangles", with_degenerates(make_icosphere(10, 2), 9)},
+            {"duplicate triangles", with_duplicates(make_icosphere(10, 2), 40)},
+            {"soup", random_soup(3, 30, 20)}};
+}
+
+TEST_CASE("voxelize: a flat square becomes one layer", "[shell]") {
+    const SurfaceVoxels shell = voxelize(make_square(16.0), {.resolution = 16});
+    CHECK(shell.grid.voxel_mm == 1.0);
+    REQUIRE(shell.size() == 17u * 17u);  // 16 mm plus half a voxel of margin on each side
+    for (std::size_t v = 0; v < shell.size(); ++v) {
+        CAPTURE(v);
+        CHECK(shell.coords[v][2] == 0);
+        CHECK(shell.normals[v] == Vec3f(0, 0, 1));
+        CHECK(shell.points_mm[v][2] == 0.0);
+        CHECK(shell.components[v] == 0);
+    }
+}
+
+TEST_CASE("voxelize: in a flat layer the links are the king's moves of a chess board", "[shell]") {
+    for (const int cells : {1, 5, 40}) {
+        CAPTURE(cells);
+        const SurfaceVoxels shell = voxelize(make_square(16.0, cells), {.resolution = 16});
+        const auto at = [](int x, int y) { return static_cast<VoxelIndex>(17 * y + x); };
+        REQUIRE(shell.size() == 17u * 17u);
+        for (int y = 0; y < 17; ++y)
+            for (int x = 0; x < 17; ++x) {
+                std::vector<VoxelIndex> expected;
+                for (int b = std::max(0, y - 1); b <= std::min(16, y + 1); ++b)
+                    for (int a = std::max(0, x - 1); a <= std::min(16, x + 1); ++a)
+                        if (a != x || b != y) expected.push_back(at(a, b));
+                const auto row = shell.adjacency.of(at(x, y));
+                CHECK(std::vector<VoxelIndex>(row.begin(), row.end()) == expected);
+                for (std::uint32_t e = shell.adjacency.first[at(x, y)]; e < shell.adjacency.first[at(x, y) + 1]; ++e) {
+                    const VoxelCoord& w = shell.coords[shell.adjacency.neighbor[e]];
+                    CHECK(shell.adjacency.length_voxels[e] == Approx(std::hypot(w[0] - x, w[1] - y)));
+                }
+            }
+    }
+}
+
+TEST_CASE("voxelize: sphere normals point away from the centre and points lie on the surface", "[shell]") {
+    const double radius_mm = 20.0;
+    const SurfaceVoxels shell = voxelize(make_sphere(radius_mm, 24, 48), {.resolution = 24});
+    // The surface inside a voxel lies within half a diagonal of its centre, so its normal turns by at most that
+    // length over the radius; the facets themselves add half their opening angle.
+    const double half_diagonal_mm = 0.5 * std::sqrt(3.0) * shell.grid.voxel_mm;
+    const double max_angle = 2 * half_diagonal_mm / radius_mm + std::numbers::pi / 24;
+    const double sagitta_mm = radius_mm * (1 - std::cos(std::numbers::pi / 24)) * 2;
+    for (std::size_t v = 0; v < shell.size(); ++v) {
+        CAPTURE(v);
+        const Vec3 outward = shell.grid.center_mm(shell.coords[v]).normalized();
+        CHECK(shell.normals[v].cast<double>().dot(outward) >= std::cos(max_angle));
+        CHECK(std::abs(shell.normals[v].norm() - 1.0F) < 1e-6F);
+        CHECK(shell.points_mm[v].norm() <= radius_mm + 1e-9);
+        CHECK(shell.points_mm[v].norm() >= radius_mm - sagitta_mm);
+        const Vec3 in_cell = (shell.points_mm[v] - shell.grid.center_mm(shell.coords[v])) / shell.grid.voxel_mm;
+        CHECK(in_cell.cwiseAbs().maxCoeff() < 0.5 + 1e-6);
+    }
+}
+
+TEST_CASE("voxelize: weights normals by the area inside the voxel", "[shell]") {
+    // A 0.4 mm high wall stands on the floor along x = 8. A voxel on the fold is a 1 mm cube that holds 1 mm^2 of
+    // floor (normal +z) and 0.4 mm^2 of wall (normal +x). Floor and wall share the line of vertices.
+    TriangleMesh mesh;
+    for (const double x : {0.0, 8.0, 16.0})
+        for (const double y : {0.0, 16.0}) mesh.positions_mm.emplace_back(x, y, 0.0);
+    mesh.positions_mm.emplace_back(8, 16, 0.4);
+    mesh.positions_mm.emplace_back(8, 0, 0.4);
+    for (const Triangle& t : {Triangle{0, 2, 3}, {0, 3, 1}, {2, 4, 5}, {2, 5, 3}, {2, 3, 6}, {2, 6, 7}})
+        mesh.triangles.push_back(t);
+    const SurfaceVoxels shell = voxelize(mesh, {.resolution = 16});
+    const auto on_fold = std::find(shell.coords.begin(), shell.coords.end(), VoxelCoord{8, 5, 0});
+    REQUIRE(on_fold != shell.coords.end());
+    const auto v = static_cast<std::size_t>(on_fold - shell.coords.begin());
+    CHECK((shell.normals[v] - Vec3f(0.4F, 0, 1).normalized()).norm() < 1e-6F);
+    CHECK(shell.area_mm2[v] == Approx(1.4F));
+}
+
+TEST_CASE("voxelize: selects the voxels the surface touches and no others", "[shell][property]") {
+    const auto seed = GENERATE(range(1u, 7u));
+    CAPTURE(seed);
+    const TriangleMesh mesh = random_soup(seed, 12, 30.0);
+    const SurfaceVoxels shell = voxelize(mesh, {.resolution = 8});
+    const std::set<VoxelCoord> selected(shell.coords.begin(), shell.coords.end());
+
+    // Oracle: sample every triangle on a lattice. No point of a triangle is farther than `slack` from a sample, so
+    // a touched voxel, grown by `slack`, holds at least one.
+    constexpr int steps = 60;
+    std::set<VoxelCoord> touched;
+    std::set<VoxelCoord> nearly_touched;
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3& a = mesh.positions_mm[t[0]];
+        const Vec3 ab = mesh.positions_mm[t[1]] - a;
+        const Vec3 ac = mesh.positions_mm[t[2]] - a;
+        const double slack = (ab.norm() + ac.norm()) / steps;
+        for (int i = 0; i <= steps; ++i)
+            for (int j = 0; i + j <= steps; ++j) {
+                const Vec3 p = a + (i * ab + j * ac) / steps;
+                touched.insert(voxel_holding(shell.grid, p));
+                for (int corner = 0; corner < 8; ++corner)
+                    nearly_touched.insert(voxel_holding(
+                        shell.grid, p + slack * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1)));
+            }
+    }
+    CHECK(std::ranges::includes(selected, touched));
+    CHECK(std::ranges::includes(nearly_touched, selected));
+}
+
+TEST_CASE("voxelize: the areas of all entries add up to the surface", "[shell][property]") {
+    for (const auto& [name, mesh] : assorted_meshes()) {
+        CAPTURE(name);
+        const SurfaceVoxels shell = voxelize(mesh, {.resolution = 40});
+        double sum = 0.0;
+        for (const float a : shell.area_mm2) sum += static_cast<double>(a);
+        CHECK(sum == Approx(area_mm2(mesh)).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("voxelize: a connected surface gives a connected shell, and separate ones stay separate",
+          "[shell][property]") {
+    const int resolution = GENERATE(8, 23, 64);
+    CAPTURE(resolution);
+    for (const auto& [name, mesh] : assorted_meshes()) {
+        CAPTURE(name);
+        const SurfaceVoxels shell = voxelize(mesh, {.resolution = resolution});
+        const ShellComponents found = connected_components(shell.adjacency);
+        const std::size_t expected = count_mesh_components(mesh);
+        CHECK(found.count() == expected);
+        // The component of an entry is that of its triangles.
+        std::set<std::uint32_t> ids(shell.components.begin(), shell.components.end());
+        CHECK(ids.size() == expected);
+        CHECK(*ids.rbegin() + 1 == expected);
+        for (std::size_t v = 0; v < shell.size(); ++v)
+            for (const VoxelIndex w : shell.adjacency.of(static_cast<VoxelIndex>(v)))
+                REQUIRE(shell.components[v] == shell.components[w]);
+    }
+}
+
+TEST_CASE("voxelize: components are numbered by their lowest triangle", "[shell]") {
+    const TriangleMesh low = make_icosphere(3, 2, {0, 0, -10});
+    const TriangleMesh high = make_icosphere(3, 2, {0, 0, 10});
+    for (const bool low_first : {true, false}) {
+        const SurfaceVoxels shell = voxelize(low_first ? joined(low, high) : joined(high, low), {.resolution = 32});
+        CHECK(shell.components.front() == (low_first ? 0u : 1u));
+        CHECK(shell.components.back() == (low_first ? 1u : 0u));
+    }
+}
+
+TEST_CASE("voxelize: links are symmetric, sorted and between touching cells", "[shell][property]") {
+    for (const auto& [name, mesh] : assorted_meshes()) {
+        CAPTURE(name);
+        const SurfaceVoxels shell = voxelize(mesh, {.resolution = 20});
+        REQUIRE(shell.adjacency.first.size() == shell.size() + 1);
+        for (VoxelIndex v = 0; v < shell.size(); ++v) {
+            const auto row = shell.adjacency.of(v);
+            for (std::size_t i = 0; i < row.size(); ++i) {
+                if (i > 0) REQUIRE(row[i - 1] < row[i]);
+                const auto back = shell.adjacency.of(row[i]);
+                REQUIRE(std::binary_search(back.begin(), back.end(), v));
+                int squared = 0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const int d = shell.coords[row[i]][k] - shell.coords[v][k];
+                    REQUIRE(std::abs(d) <= 1);
+                    squared += d * d;
+                }
+                REQUIRE(squared >= 1);
+                REQUIRE(shell.adjacency.length_voxels[shell.adjacency.first[v] + i] ==
+                        Approx(std::sqrt(static_cast<float>(squared))));
+            }
+        }
+    }
+}
+
+// Which side of the plate an entry away from the rim is on.
+enum class Side { kTop, kBottom };
+
+TEST_CASE("voxelize: the two sides of a thin plate meet at the rim alone", "[shell][property]") {
+    // Down to a fiftieth of a voxel; at 0.3 and less both sides run through the same cells.
+    const double thickness_voxels = GENERATE(0.02, 0.3, 0.9, 1.0, 1.3, 2.0);
+    const double angle = GENERATE(0.0, 0.37);
+    CAPTURE(thickness_voxels, angle);
+    const double voxel = 0.5;
+    const double side = 16.0;
+    const TriangleMesh flat = make_thin_plate(side, side, thickness_voxels * voxel);
+    const Vec3 axis = Vec3(1, 0.6, 0.2).normalized();
+    const TriangleMesh mesh = rotated(flat, axis, angle);
+    const SurfaceVoxels shell = voxelize(mesh, {.resolution = static_cast<int>(side / voxel)});
+    // Undo the rotation to know how far an entry is from the rim.
+    TriangleMesh points;
+    points.positions_mm = shell.points_mm;
+    points = rotated(points, axis, -angle);
+    const auto rim_distance = [&](VoxelIndex v) {
+        const Vec3& p = points.positions_mm[v];
+        return std::min({p[0], p[1], side - p[0], side - p[1]});
+    };
+    const auto side_of = [&](VoxelIndex v) {
+        return points.positions_mm[v][2] > 0.5 * thickness_voxels * voxel ? Side::kTop : Side::kBottom;
+    };
+    // A cell with rim in it reaches at most one diagonal inward, and what is linked to it one more.
+    const double reach = 2 * std::sqrt(3.0) * shell.grid.voxel_mm;
+    std::size_t inner[2] = {0, 0};
+    for (VoxelIndex v = 0; v < shell.size(); ++v) {
+        if (rim_distance(v) < reach) continue;
+        ++inner[side_of(v) == Side::kTop];
+        const float sign = side_of(v) == Side::kTop ? 1.0F : -1.0F;
+        TriangleMesh normal;
+        normal.positions_mm = {shell.normals[v].cast<double>()};
+        CHECK(sign * rotated(normal, axis, -angle).positions_mm[0][2] > 0.999);
+        for (const VoxelIndex w : shell.adjacency.of(v)) CHECK(side_of(w) == side_of(v));
+    }
+    // Each side has its own entries: as many as cells of the side's area, at least.
+    CHECK(inner[0] > 600);
+    CHECK(inner[1] > 600);
+    CHECK(connected_components(shell.adjacency).count() == 1);
+}
+
+TEST_CASE("voxelize: walls closer than a voxel do not mix, be they of one body or of two", "[shell][property]") {
+    // Gap of 0.3 voxels between two boxes, and between two concentric spheres.
+    const TriangleMesh boxes = joined(make_box({0, 0, 0}, {8, 10, 10}), make_box({8.1, 0, 0}, {16, 10, 10}));
+    for (const int resolution : {32, 48}) {
+        const SurfaceVoxels shell = voxelize(boxes, {.resolution = resolution});
+        CHECK(connected_components(shell.adjacency).count() == 2);
+        std::size_t shared_cells = 0;
+        for (std::size_t v = 1; v < shell.size(); ++v) shared_cells += shell.coords[v] == shell.coords[v - 1];
+        CHECK(shared_cells > 300);  // the case is the one meant: both walls in one cell
+    }
+    const SurfaceVoxels spheres = voxelize(make_nested_spheres(10, 9.9), {.resolution = 40});
+    CHECK(connected_components(spheres.adjacency).count() == 2);
+    for (std::size_t v = 0; v < spheres.size(); ++v) {
+        const double along = spheres.normals[v].cast<double>().dot(spheres.points_mm[v].normalized());
+        CHECK((spheres.components[v] == spheres.components[0] ? along : -along) > 0.9);
+    }
+}
+
+TEST_CASE("voxelize: around a sharp edge the two faces are linked over the cells of the edge", "[shell]") {
+    const SurfaceVoxels shell = voxelize(make_box({0, 0, 0}, {16, 16, 16}), {.resolution = 16});
+    // Steps from the middle of the top to the middle of the side +x: 8 to the edge and 8 down, as on the surface.
+    const auto find = [&](const VoxelCoord& c) {
+        const auto at = std::find(shell.coords.begin(), shell.coords.end(), c);
+        REQUIRE(at != shell.coords.end());
+        return static_cast<VoxelIndex>(at - shell.coords.begin());
+    };
+    std::vector<int> steps(shell.size(), -1);
+    std::vector<VoxelIndex> open = {find({8, 8, 16})};
+    steps[open[0]] = 0;
+    for (std::size_t i = 0; i < open.size(); ++i)
+        for (const VoxelIndex w : shell.adjacency.of(open[i]))
+            if (steps[w] < 0) {
+                steps[w] = steps[open[i]] + 1;
+                open.push_back(w);
+            }
+    CHECK(steps[find({16, 8, 16})] == 8);
+    // One step fewer than 16 where the diagonal past the edge's cell is taken.
+    CHECK(steps[find({16, 8, 8})] == 15);
+    CHECK(*std::min_element(steps.begin(), steps.end()) == 0);
+}
+
+TEST_CASE("voxelize: where two sides of a wall cancel, the one listed first gives the normal", "[shell]") {
+    // A fin of zero thickness: one sheet folded along its top, z = 16. Only the cells of the fold join the sides.
+    TriangleMesh mesh;
+    mesh.positions_mm = {{0, 0, 0}, {16, 0, 0}, {16, 0, 16}, {0, 0, 16}, {0, 0, 0}, {16, 0, 0}};
+    const std::vector<Triangle> front = {{0, 1, 2}, {0, 2, 3}};  // normal -y
+    const std::vector<Triangle> back = {{3, 2, 5}, {3, 5, 4}};   // normal +y
+    for (const bool front_first : {true, false}) {
+        mesh.triangles = front_first ? front : back;
+        const std::vector<Triangle>& other = front_first ? back : front;
+        mesh.triangles.insert(mesh.triangles.end(), other.begin(), other.end());
+        const SurfaceVoxels shell = voxelize(mesh, {.resolution = 16});
+        REQUIRE(shell.size() == 16u * 17u * 2u + 17u);
+        for (std::size_t v = 0; v < shell.size(); ++v) {
+            CAPTURE(v);
+            CHECK(std::abs(shell.normals[v][1]) == Approx(1.0F));
+            if (shell.coords[v][2] == 16) CHECK(shell.normals[v][1] == Approx(front_first ? -1.0F : 1.0F));
+        }
+    }
+}
+
+TEST_CASE("voxelize: coordinates do not depend on the order of the triangles", "[shell][property]") {
+    const auto seed = GENERATE(range(1u, 5u));
+    CAPTURE(seed);
+    for (const TriangleMesh& mesh :
+         {random_soup(seed, 12, 30.0), make_torus(9, 2.5, 32, 16), make_thin_plate(9, 9, 0.1)}) {
+        const SurfaceVoxels before = voxelize(mesh, {.resolution = 24});
+        const SurfaceVoxels after = voxelize(shuffled(mesh, seed), {.resolution = 24});
+        CHECK(before.coords == after.coords);
+        CHECK(before.adjacency.neighbor.size() == after.adjacency.neighbor.size());
+    }
+}
+
+TEST_CASE("voxelize: lists voxels by z, then y, then x, repeated for each sheet by its lowest triangle", "[shell]") {
+    for (const TriangleMesh& mesh : {make_sphere(5.0, 16, 32), make_thin_plate(9, 9, 0.1)}) {
+        const SurfaceVoxels shell = voxelize(mesh, {.resolution = 16});
+        for (std::size_t v = 1; v < shell.size(); ++v) {
+            CAPTURE(v);
+            VoxelCoord before = shell.coords[v - 1];
+            VoxelCoord after = shell.coords[v];
+            std::ranges::reverse(before);
+            std::ranges::reverse(after);
+            REQUIRE(before <= after);
+        }
+    }
+    // The plate's bottom comes first in the mesh or its top does; either way the first listed is that one.
+    const TriangleMesh plate = make_thin_plate(9, 9, 0.1);
+    const SurfaceVoxels shell = voxelize(plate, {.resolution = 16});
+    std::size_t doubled = 0;
+    for (std::size_t v = 1; v < shell.size(); ++v)
+        if (shell.coords[v] == shell.coords[v - 1]) {
+            ++doubled;
+            CHECK(shell.triangles[v - 1] < shell.triangles[v]);
+        }
+    CHECK(doubled > 100);
+}
+
+TEST_CASE("voxelize: the outer faces of a box take one layer each at any size", "[shell][property]") {
+    for (const double height : {3.0, 3.1, 3.3, 3.5, 3.77, 3.99}) {
+        CAPTURE(height);
+        const SurfaceVoxels shell = voxelize(make_box({0, 0, 0}, {20, 20, height}), {.resolution = 20});
+        std::set<int> layers;
+        for (const VoxelCoord& c : shell.coords)
+            if (c[0] > 2 && c[0] < 17 && c[1] > 2 && c[1] < 17) layers.insert(c[2]);
+        CHECK(layers.size() == 2);
+        // Every corner of the box is at least a quarter of a voxel inside the grid.
+        CHECK(shell.grid.origin_mm[2] <= -0.25 + 1e-12);
+        CHECK(shell.grid.origin_mm[2] + shell.grid.extent[2] >= height + 0.25 - 1e-12);
+    }
+}
+
+TEST_CASE("voxelize: gives the same shell on any number of threads", "[shell][property]") {
+    for (const TriangleMesh& mesh :
+         {make_icosphere(10, 4), make_box({0, 0, 0}, {10, 9, 8}), make_thin_plate(9, 9, 0.1)}) {
+        SurfaceVoxels reference;
+        for (const int threads : {1, 2, 5}) {
+            const ThreadLimit limit(threads);
+            const SurfaceVoxels shell = voxelize(mesh, {.resolution = 100});
+            if (threads == 1) reference = shell;
+            CHECK(shell.coords == reference.coords);
+            CHECK(shell.normals == reference.normals);
+            CHECK(shell.points_mm == reference.points_mm);
+            CHECK(shell.triangles == reference.triangles);
+            CHECK(shell.area_mm2 == reference.area_mm2);
+            CHECK(shell.components == reference.components);
+            CHECK(shell.adjacency.first == reference.adjacency.first);
+            CHECK(shell.adjacency.neighbor == reference.adjacency.neighbor);
+            CHECK(shell.adjacency.length_voxels == reference.adjacency.length_voxels);
+        }
+    }
+}
+
+TEST_CASE("voxelize: rejects what it cannot voxelize", "[shell]") {
+    CHECK_THROWS_AS(voxelize({}), InvalidInput);
+    CHECK_THROWS_AS(voxelize(make_square(0.0)), InvalidInput);
+    CHECK_THROWS_AS(voxelize(make_square(1e200)), InvalidInput);
+    CHECK_THROWS_AS(voxelize(make_square(1e-200)), InvalidInput);
+    for (const int resolution : {-1, 0, 3, 2049})
+        CHECK_THROWS_AS(voxelize(make_square(1.0), {resolution}), InvalidSetting);
+    CHECK_NOTHROW(voxelize(make_square(1.0), {4}));
+
+    TriangleMesh dangling = make_square(1.0);
+    dangling.triangles[0][2] = 99;
+    CHECK_THROWS_AS(voxelize(dangling), InvalidInput);
+
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        TriangleMesh not_finite = make_square(1.0);
+        not_finite.positions_mm[0][1] = bad;
+        CHECK_THROWS_AS(voxelize(not_finite), InvalidInput);
+    }
+}
+
+TEST_CASE("voxelize: stops when asked and reports progress in order", "[shell]") {
+    std::stop_source source;
+    double last = -1.0;
+    const RunControl run(
+        [&](std::string_view, double fraction) {
+            CHECK(fraction >= last);
+            last = fraction;
+        },
+        source.get_token());
+    voxelize(make_sphere(5.0, 32, 64), {.resolution = 16}, run);
+    CHECK(last == 1.0);
+
+    source.request_stop();
+    CHECK_THROWS_AS(voxelize(make_square(1.0), {}, run), Cancelled);
+}
+
+TEST_CASE("connected_components: of one state alone, with sizes", "[shell]") {
+    // Rows of a square, every third one empty: solid stripes of two rows.
+    const SurfaceVoxels shell = voxelize(make_square(16.0), {.resolution = 16});
+    SolidStates states(shell.size());
+    for (std::size_t v = 0; v < shell.size(); ++v)
+        states[v] = shell.coords[v][1] % 3 == 2 ? SolidState::kEmpty : SolidState::kSolid;
+    const ShellComponents solid = connected_components(shell.adjacency, states, SolidState::kSolid);
+    CHECK(solid.sizes == std::vector<std::size_t>(6, 34));  // 17 rows: 5 are empty
+    for (std::size_t v = 0; v < shell.size(); ++v)
+        CHECK(solid.of[v] ==
+              (states[v] == SolidState::kEmpty ? kNoComponent : static_cast<std::uint32_t>(shell.coords[v][1] / 3)));
+    CHECK(connected_components(shell.adjacency, states, SolidState::kEmpty).sizes == std::vector<std::size_t>(5, 17));
+}
+
+TEST_CASE("face_links: keeps the links over faces and no others", "[shell]") {
+    const SurfaceVoxels shell = voxelize(make_icosphere(10, 3), {.resolution = 24});
+    const Adjacency faces = face_links(shell.adjacency);
+    REQUIRE(faces.first.size() == shell.adjacency.first.size());
+    for (VoxelIndex v = 0; v < shell.size(); ++v) {
+        std::vector<VoxelIndex> expected;
+        for (const VoxelIndex w : shell.adjacency.of(v))
+            if (share_face(shell.coords[v], shell.coords[w])) expected.push_back(w);
+        CHECK(std::vector<VoxelIndex>(faces.of(v).begin(), faces.of(v).end()) == expected);
+    }
+}
+
+}  // namespace
+}  // namespace fretwork
