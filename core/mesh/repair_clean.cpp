@@ -40,11 +40,11 @@ class FlatPass {
 
     void run(const std::vector<std::uint32_t>& flat_triangles) {
         for (const std::uint32_t t : flat_triangles) deal_with(t);
-        drop_.resize(mesh_.triangles.size(), 0);
-        drop_triangles(draft_, drop_);
         std::vector<std::uint32_t> target(mesh_.positions_mm.size());
         for (std::uint32_t v = 0; v < target.size(); ++v) target[v] = merged_.find(v);
         remap_vertices(draft_, target);
+        drop_.resize(mesh_.triangles.size(), 0);
+        drop_triangles(draft_, drop_);
     }
 
   private:

@@ -48,7 +48,7 @@ void turn_outward(Draft& draft);
 /// Renumbers vertices: `target[v]` is the vertex that v becomes; unnamed ones go.
 void remap_vertices(Draft& draft, const std::vector<std::uint32_t>& target);
 
-/// Keeps the triangles that are not marked.
+/// Keeps the triangles that are not marked, and the vertices that these name.
 void drop_triangles(Draft& draft, const std::vector<std::uint8_t>& drop);
 
 }  // namespace fretwork::repair

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <unordered_map>
 
 #include "core/mesh/repair_steps.h"
@@ -153,8 +154,12 @@ void drop_triangles(Draft& draft, const std::vector<std::uint8_t>& drop) {
             draft.mesh.triangles[kept] = draft.mesh.triangles[t];
             draft.source[kept++] = draft.source[t];
         }
+    if (kept == drop.size()) return;
     draft.mesh.triangles.resize(kept);
     draft.source.resize(kept);
+    std::vector<std::uint32_t> same(draft.mesh.positions_mm.size());
+    std::iota(same.begin(), same.end(), 0u);
+    remap_vertices(draft, same);
 }
 
 }  // namespace fretwork::repair
