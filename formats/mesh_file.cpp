@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "formats/atomic_write.h"
+#include "formats/carved_threemf_writer.h"
 #include "formats/obj_reader.h"
 #include "formats/obj_writer.h"
 #include "formats/off_reader.h"
@@ -95,7 +96,10 @@ std::string write_mesh(const MeshToWrite& input, MeshFormat format) {
         case MeshFormat::kThreemf:
             break;
     }
-    throw InvalidInput("3MF cannot be written");
+    CarvedPackage package;
+    package.objects.push_back({input.mesh, input.triangle_colors, std::string(input.name)});
+    package.title = input.name;
+    return write_carved_threemf(package);
 }
 
 void write_mesh(const std::filesystem::path& path, const MeshToWrite& input, std::optional<MeshFormat> format) {

@@ -50,6 +50,15 @@ void check_pixels(bool fits, int width, int height) {
                            " pixels with another number of values, expected them to agree and at least one");
 }
 
+void start_sheet(const PngTarget& file, int width, int height, int bits, int type) {
+    png_set_IHDR(file.png(), file.info(), static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bits, type,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    // Sheets of a shell are mostly empty: long runs, for which the fastest level is nearly the best.
+    png_set_compression_level(file.png(), 1);
+    png_set_filter(file.png(), PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
+    png_write_info(file.png(), file.info());
+}
+
 }  // namespace
 
 std::string write_png(const Image& image) {
@@ -78,16 +87,11 @@ std::string write_png16(std::span<const std::uint16_t> samples, int width, int h
     const bool known = channels == 1 || channels == 3 || channels == 4;
     const std::size_t row_samples = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
     check_pixels(known && samples.size() == row_samples * static_cast<std::size_t>(height), width, height);
-    PngTarget file;
     const int type = channels == 1   ? PNG_COLOR_TYPE_GRAY
                      : channels == 3 ? PNG_COLOR_TYPE_RGB
                                      : PNG_COLOR_TYPE_RGB_ALPHA;
-    png_set_IHDR(file.png(), file.info(), static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 16, type,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    // Sheets of a shell are mostly empty: long runs, for which the fastest level is nearly the best.
-    png_set_compression_level(file.png(), 1);
-    png_set_filter(file.png(), PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
-    png_write_info(file.png(), file.info());
+    PngTarget file;
+    start_sheet(file, width, height, 16, type);
     std::vector<std::uint8_t> row(2 * row_samples);
     for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
         for (std::size_t i = 0; i < row_samples; ++i) {
@@ -97,6 +101,16 @@ std::string write_png16(std::span<const std::uint16_t> samples, int width, int h
         }
         png_write_row(file.png(), row.data());
     }
+    png_write_end(file.png(), nullptr);
+    return file.take();
+}
+
+std::string write_png_gray8(std::span<const std::uint8_t> samples, int width, int height) {
+    check_pixels(samples.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height), width, height);
+    PngTarget file;
+    start_sheet(file, width, height, 8, PNG_COLOR_TYPE_GRAY);
+    for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
+        png_write_row(file.png(), samples.data() + y * static_cast<std::size_t>(width));
     png_write_end(file.png(), nullptr);
     return file.take();
 }

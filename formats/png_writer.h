@@ -19,4 +19,7 @@ std::string write_png(const Image& image);
 /// \throws InvalidInput  sizes that do not agree.
 std::string write_png16(std::span<const std::uint16_t> samples, int width, int height, int channels);
 
+/// The same for one channel of 8 bits.
+std::string write_png_gray8(std::span<const std::uint8_t> samples, int width, int height);
+
 }  // namespace fretwork

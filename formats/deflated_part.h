@@ -1,0 +1,26 @@
+// Large texts packed in parallel, piece by piece.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "core/base/run_control.h"
+
+namespace fretwork {
+
+/// Raw deflate data with what a ZIP record says about it.
+struct DeflatedPart {
+    std::string bytes;
+    std::uint64_t size = 0;   ///< unpacked
+    std::uint32_t crc32 = 0;  ///< of the unpacked bytes
+};
+
+/// Joins `piece(0)`, ..., `piece(count - 1)` in order. Pieces are made and packed on several threads,
+/// and only their packed form is kept, so the whole text is never in memory. The bytes depend on the
+/// pieces alone.
+/// \throws Cancelled
+DeflatedPart deflate_pieces(std::size_t count, const std::function<std::string(std::size_t)>& piece,
+                            const RunControl& run = {});
+
+}  // namespace fretwork

@@ -1,0 +1,27 @@
+// Names that the 3MF specifications fix.
+#pragma once
+
+#include <string_view>
+
+namespace fretwork::threemf {
+
+inline constexpr std::string_view kCore = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+inline constexpr std::string_view kMaterial = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
+inline constexpr std::string_view kVolumetric = "http://schemas.3mf.io/3dmanufacturing/volumetric/2022/01";
+inline constexpr std::string_view kProduction = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
+inline constexpr std::string_view kTriangleSets = "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07";
+inline constexpr std::string_view kFretwork = "http://fretwork.dev/3mf/2026/11";
+
+inline constexpr std::string_view kModelRelation = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+inline constexpr std::string_view kTextureRelation = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture";
+inline constexpr std::string_view kThumbnailRelation =
+    "http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail";
+inline constexpr std::string_view kSpecRelation = "http://fretwork.dev/3mf/2026/11/spec";
+inline constexpr std::string_view kReportRelation = "http://fretwork.dev/3mf/2026/11/report";
+
+inline constexpr std::string_view kContentTypesPart = "[Content_Types].xml";
+inline constexpr std::string_view kRootRelationsPart = "_rels/.rels";
+inline constexpr std::string_view kModelPart = "3D/3dmodel.model";
+inline constexpr std::string_view kModelRelationsPart = "3D/_rels/3dmodel.model.rels";
+
+}  // namespace fretwork::threemf

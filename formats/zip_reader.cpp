@@ -1,0 +1,177 @@
+#include "formats/zip_reader.h"
+
+#include <sys/stat.h>
+#include <zip.h>
+
+#include <algorithm>
+#include <cctype>
+#include <unordered_map>
+
+#include "core/base/error.h"
+#include "formats/parse_error.h"
+
+namespace fretwork {
+namespace {
+
+struct DiscardZip {
+    void operator()(zip_t* zip) const { zip_discard(zip); }
+};
+struct CloseZipFile {
+    void operator()(zip_file_t* file) const { zip_fclose(file); }
+};
+
+std::string folded(std::string_view name) {
+    std::string lower(name);
+    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return lower;
+}
+
+/// What is wrong with a name, or nothing.
+std::string_view fault_of_name(std::string_view name) {
+    if (name.empty() || name.size() > 1024) return "an empty or overlong name";
+    if (name.front() == '/') return "an absolute name";
+    if (name.find('\\') != name.npos) return "a name with a backslash";
+    if (name.find(':') != name.npos) return "a name with a drive or colon";
+    if (std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
+        return "a name with control characters";
+    for (std::size_t begin = 0; begin <= name.size();) {
+        const std::size_t end = std::min(name.find('/', begin), name.size());
+        const std::string_view part = name.substr(begin, end - begin);
+        if (part == ".." || part == ".") return "a name that leaves its folder";
+        begin = end + 1;
+    }
+    return {};
+}
+
+}  // namespace
+
+struct ZipReader::Impl {
+    std::string source;
+    ZipLimits limits;
+    std::unique_ptr<zip_t, DiscardZip> zip;
+    std::vector<Entry> entries;
+    std::unordered_map<std::string, std::size_t> by_name;  ///< folded name -> position in `entries`
+    std::vector<zip_uint64_t> index;                       ///< of each entry within the archive
+
+    [[noreturn]] void fail(std::string_view entry, std::string_view found, std::string_view expected) const {
+        fail_parse(source, entry.empty() ? std::string("archive") : "entry " + in_quotes(entry), found, expected);
+    }
+
+    void open(std::string_view bytes) {
+        if (!bytes.starts_with("PK")) fail({}, in_quotes(bytes.substr(0, 4)), "a ZIP archive");
+        zip_error_t error;
+        zip_error_init(&error);
+        zip_source_t* memory = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
+        if (memory != nullptr) {
+            zip.reset(zip_open_from_source(memory, ZIP_RDONLY, &error));
+            if (!zip) zip_source_free(memory);
+        }
+        const std::string reason = zip ? "" : zip_error_strerror(&error);
+        zip_error_fini(&error);
+        if (!zip) fail({}, "a broken archive (" + reason + ")", "a ZIP archive");
+    }
+
+    void list(std::string_view bytes) {
+        const zip_int64_t count = zip_get_num_entries(zip.get(), 0);
+        if (count < 0 || static_cast<std::size_t>(count) > limits.max_entries)
+            fail({}, std::to_string(count) + " entries", "at most " + std::to_string(limits.max_entries));
+        std::uint64_t total = 0;
+        for (zip_uint64_t i = 0; i < static_cast<zip_uint64_t>(count); ++i) {
+            zip_stat_t stat;
+            zip_stat_init(&stat);
+            if (zip_stat_index(zip.get(), i, 0, &stat) != 0 || stat.name == nullptr)
+                fail({}, "entry " + std::to_string(i) + " without a name", "a sound archive");
+            check(stat, i);
+            total += stat.size;
+            if (std::string_view(stat.name).back() == '/') continue;
+            if (!by_name.emplace(folded(stat.name), entries.size()).second)
+                fail(stat.name, "a second entry of this name", "one entry per name");
+            entries.push_back({stat.name, stat.size});
+            index.push_back(i);
+        }
+        // Entries that share their packed bytes can each keep to the ratio and still flood memory together.
+        if (total > limits.max_ratio * bytes.size() + (1 << 20))
+            fail({}, std::to_string(total) + " bytes unpacked from " + std::to_string(bytes.size()),
+                 "a ratio of at most " + std::to_string(limits.max_ratio));
+    }
+
+    void check(const zip_stat_t& stat, zip_uint64_t i) const {
+        constexpr zip_uint64_t kNeeded =
+            ZIP_STAT_NAME | ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_COMP_METHOD | ZIP_STAT_ENCRYPTION_METHOD;
+        if ((stat.valid & kNeeded) != kNeeded) fail(stat.name, "an incomplete record", "sizes and method");
+        if (const auto fault = fault_of_name(stat.name); !fault.empty())
+            fail(stat.name, fault, "a relative path within the package");
+        if (stat.encryption_method != ZIP_EM_NONE) fail(stat.name, "encrypted data", "plain data");
+        if (stat.comp_method != ZIP_CM_STORE && stat.comp_method != ZIP_CM_DEFLATE)
+            fail(stat.name, "compression method " + std::to_string(stat.comp_method), "stored or deflate");
+        if (stat.size > limits.max_part_bytes)
+            fail(stat.name, std::to_string(stat.size) + " bytes", "at most " + std::to_string(limits.max_part_bytes));
+        if (stat.size > (1 << 20) && stat.size / limits.max_ratio > stat.comp_size)
+            fail(stat.name, std::to_string(stat.size) + " bytes packed into " + std::to_string(stat.comp_size),
+                 "a ratio of at most " + std::to_string(limits.max_ratio));
+        zip_uint8_t system = 0;
+        zip_uint32_t attributes = 0;
+        if (zip_file_get_external_attributes(zip.get(), i, 0, &system, &attributes) == 0 && system == ZIP_OPSYS_UNIX &&
+            S_ISLNK(attributes >> 16))
+            fail(stat.name, "a symbolic link", "a file");
+    }
+
+    [[nodiscard]] std::size_t find(std::string_view name) const {
+        const auto found = by_name.find(folded(name));
+        if (found == by_name.end()) fail(name, "no such entry", "one");
+        return found->second;
+    }
+
+    void read_entry(std::size_t position, const std::function<void(std::string_view)>& take) const {
+        const Entry& entry = entries[position];
+        const std::unique_ptr<zip_file_t, CloseZipFile> file(zip_fopen_index(zip.get(), index[position], 0));
+        if (!file) fail(entry.name, "data that cannot be opened", "a sound entry");
+        std::vector<char> block(1 << 18);
+        std::uint64_t done = 0;
+        while (true) {
+            const zip_int64_t got = zip_fread(file.get(), block.data(), block.size());
+            if (got < 0)
+                fail(entry.name, std::string("broken data (") + zip_file_strerror(file.get()) + ")", "a sound entry");
+            done += static_cast<std::uint64_t>(got);
+            if (done > entry.size || (got == 0 && done != entry.size))
+                fail(entry.name, std::to_string(done) + " bytes",
+                     "the " + std::to_string(entry.size) + " it announces");
+            if (got == 0) return;
+            take({block.data(), static_cast<std::size_t>(got)});
+        }
+    }
+};
+
+ZipReader::ZipReader(std::string_view bytes, std::string_view source, const ZipLimits& limits)
+    : impl_(std::make_unique<Impl>()) {
+    impl_->source = source;
+    impl_->limits = limits;
+    impl_->open(bytes);
+    impl_->list(bytes);
+}
+ZipReader::~ZipReader() = default;
+ZipReader::ZipReader(ZipReader&&) noexcept = default;
+ZipReader& ZipReader::operator=(ZipReader&&) noexcept = default;
+
+const std::vector<ZipReader::Entry>& ZipReader::entries() const {
+    return impl_->entries;
+}
+
+bool ZipReader::contains(std::string_view name) const {
+    return impl_->by_name.contains(folded(name));
+}
+
+std::string ZipReader::read(std::string_view name, std::uint64_t max_bytes) const {
+    const std::size_t position = impl_->find(name);
+    if (const std::uint64_t size = impl_->entries[position].size; size > max_bytes)
+        impl_->fail(name, std::to_string(size) + " bytes", "at most " + std::to_string(max_bytes));
+    std::string bytes;
+    impl_->read_entry(position, [&](std::string_view block) { bytes.append(block); });
+    return bytes;
+}
+
+void ZipReader::read_blocks(std::string_view name, const std::function<void(std::string_view)>& take) const {
+    impl_->read_entry(impl_->find(name), take);
+}
+
+}  // namespace fretwork
