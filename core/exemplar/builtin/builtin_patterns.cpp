@@ -18,12 +18,24 @@ struct Entry {
 // tileable, anisotropic, connected; width in mm; stroke radius in px.
 constexpr std::array kEntries = {
     Entry{{"cells", "Rounded cells between even walls", true, false, true, 48, 5.0}, drawing::draw_cells},
-    Entry{{"waves", "Flowing ribbons that swell and narrow", true, true, false, 48, 6.5}, drawing::draw_waves},
-    Entry{{"hooks", "Wrought-iron canes in columns", true, true, false, 48, 5.0}, drawing::draw_hooks},
-    Entry{{"zebra", "Forking stripes", true, true, false, 48, 6.5}, drawing::draw_zebra},
     Entry{{"hexagons", "Honeycomb with rounded openings", true, false, true, 55, 5.0}, drawing::draw_hexagons},
-    Entry{{"dots", "Separate discs of several sizes; everything must be joined", true, false, false, 48, 6.0},
-          drawing::draw_dots},
+    Entry{{"bubbles", "Round openings of many sizes", true, false, true, 48, 4.5}, drawing::draw_bubbles},
+    Entry{{"bricks", "Joints of a brick wall around open bricks", true, true, true, 48, 5.0}, drawing::draw_bricks},
+    Entry{{"branches", "Boughs and twigs between open fields", true, false, true, 52, 5.0}, drawing::draw_branches},
+    Entry{{"leafveins", "Midribs, side veins and fine veins", true, true, true, 48, 5.0}, drawing::draw_leafveins},
+    Entry{{"lace", "Flowers in rings of petals", true, false, true, 32, 4.5}, drawing::draw_lace},
+    Entry{{"celtic", "Plaited strands that turn back", true, true, true, 48, 6.0}, drawing::draw_celtic},
+    Entry{{"girih", "Strapwork of eight-pointed stars and crosses", true, true, true, 48, 4.6}, drawing::draw_girih},
+    Entry{{"animalskin", "Coat with the rosettes of a leopard cut out", true, false, true, 48, 5.0},
+          drawing::draw_animalskin},
+    Entry{{"coral", "Winding ridges of a brain coral", true, false, false, 48, 5.5}, drawing::draw_coral},
+    Entry{{"scales", "Overlapping fans with golden arches", true, true, false, 48, 4.8}, drawing::draw_scales},
+    Entry{{"spirals", "Running double spirals", true, true, false, 48, 4.7}, drawing::draw_spirals},
+    Entry{{"hooks", "Wrought-iron canes in columns", true, true, false, 48, 5.0}, drawing::draw_hooks},
+    Entry{{"waves", "Flowing ribbons that swell and narrow", true, true, false, 48, 6.5}, drawing::draw_waves},
+    Entry{{"zebra", "Forking stripes", true, true, false, 48, 6.5}, drawing::draw_zebra},
+    Entry{{"keyboard", "Separate rounded keys", true, true, false, 50, 10.0}, drawing::draw_keyboard},
+    Entry{{"dots", "Separate discs of several sizes and colours", true, false, false, 48, 6.0}, drawing::draw_dots},
 };
 
 constexpr auto kPatterns = [] {

@@ -11,16 +11,16 @@ namespace fretwork::drawing {
 
 PatternPictures draw_dots() {
     const Torus torus{192, 192};
-    const std::vector<Vec2> centers = scatter(torus, 34, 8, 21);
+    const std::vector<Vec2> centers = scatter(torus, 30, 10, 21);
     // Each disc takes a share of the way to its nearest neighbour and leaves a gap.
-    constexpr double kGap = 7.0, kLeast = 6.5, kMost = 14.0;
+    constexpr double kGap = 7.0, kLeast = 7.5, kMost = 15.0;
     std::vector<double> radius(centers.size());
     for (std::size_t i = 0; i < centers.size(); ++i) {
         double nearest = std::numeric_limits<double>::infinity();
         for (std::size_t j = 0; j < centers.size(); ++j)
             if (j != i) nearest = std::min(nearest, torus.shortest(centers[i] - centers[j]).norm());
         const double room = (nearest - kGap) / 2;
-        radius[i] = std::clamp(room * (0.72 + 0.28 * random_unit(22, i, 0)), kLeast, kMost);
+        radius[i] = std::clamp(room * (0.70 + 0.30 * random_unit(22, i, 0)), kLeast, kMost);
     }
     const std::array<Ink, 4> hues = {ink(0xEF476F), ink(0xFFD166), ink(0x06D6A0), ink(0x118AB2)};
     const std::array<Ink, 4> rims = {ink(0xB02A50), ink(0xE09F1F), ink(0x04936E), ink(0x0B5E7A)};

@@ -18,7 +18,7 @@ PatternPictures draw_hexagons() {
         Vec2 way = Vec2::Constant(std::numeric_limits<double>::max() / 4);
         for (int r = 0; r < kRows; ++r)
             for (int c = 0; c < kColumns; ++c) {
-                const Vec2 center((c + 0.25 + (r % 2) * 0.5) * 2 * kApothem, (r + 0.5) * kHeight / kRows);
+                const Vec2 center((c + 0.25 + (r % 2) * 0.5) * 2 * kApothem, r * static_cast<double>(kHeight) / kRows);
                 if (const Vec2 w = torus.shortest(p - center); w.squaredNorm() < way.squaredNorm()) way = w;
             }
         return shade(-regular_polygon(way, 6, kApothem - kHalfWall, kCorner, 0.0), relief);

@@ -1,5 +1,6 @@
 #include "core/exemplar/builtin/turing.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -77,6 +78,16 @@ double TuringField::at(double x, double y) const {
                    value_[static_cast<std::size_t>(cy * side_ + cx)];
         }
     return sum;
+}
+
+double TuringField::distance_px(const Vec2& p, double side_px) const {
+    constexpr double kStep = 0.5;
+    // Where the field is flat (the middle of a stripe) the quotient by the slope would run away.
+    constexpr double kLeastSlope = 0.03;
+    const auto value = [&](const Vec2& q) { return at(q.x() / side_px, q.y() / side_px); };
+    const Vec2 slope((value(p + Vec2(kStep, 0)) - value(p - Vec2(kStep, 0))) / (2 * kStep),
+                     (value(p + Vec2(0, kStep)) - value(p - Vec2(0, kStep))) / (2 * kStep));
+    return -value(p) / std::max(slope.norm(), kLeastSlope);
 }
 
 }  // namespace fretwork::drawing

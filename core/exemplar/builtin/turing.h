@@ -23,6 +23,8 @@ class TuringField {
     explicit TuringField(const TuringSettings& settings);
     /// Bicubic (B-spline) value at (x, y) in [0, 1)^2, continued periodically.
     [[nodiscard]] double at(double x, double y) const;
+    /// About the distance to the border for a picture of `side_px`, px; negative in solid.
+    [[nodiscard]] double distance_px(const Vec2& p, double side_px) const;
 
   private:
     int side_;

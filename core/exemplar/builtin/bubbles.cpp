@@ -1,0 +1,48 @@
+// Bubbles: round openings of many sizes, packed so that even walls remain.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/exemplar/builtin/drawing.h"
+#include "core/exemplar/builtin/families.h"
+
+namespace fretwork::drawing {
+namespace {
+
+struct Disc {
+    Vec2 center;
+    double radius;
+};
+
+/// Large discs first, then ever smaller ones wherever a random place leaves room.
+std::vector<Disc> pack(const Torus& torus, double largest, double smallest, double wall, std::uint64_t seed) {
+    std::vector<Disc> discs;
+    constexpr int kSizes = 12, kTriesPerSize = 1500;
+    for (int s = 0; s < kSizes; ++s) {
+        const double size = largest * std::pow(smallest / largest, static_cast<double>(s) / (kSizes - 1));
+        for (int t = 0; t < kTriesPerSize; ++t) {
+            const auto item = static_cast<std::uint64_t>(s * kTriesPerSize + t);
+            const Vec2 at(torus.width * random_unit(seed, item, 0), torus.height * random_unit(seed, item, 1));
+            double room = 1.12 * size;
+            for (const Disc& d : discs) room = std::min(room, torus.shortest(at - d.center).norm() - d.radius - wall);
+            if (room >= size) discs.push_back({at, room});
+        }
+    }
+    return discs;
+}
+
+}  // namespace
+
+PatternPictures draw_bubbles() {
+    const Torus torus{192, 192};
+    const std::vector<Disc> discs = pack(torus, 25.0, 5.5, 7.5, 61);
+    const Relief relief{ink(0x3A86C8), ink(0xEAF6FF), ink(0x10294A), ink(0x1D4E89), 4.5, 14.0};
+    return draw(192, 192, [&](const Vec2& p) {
+        double outside = std::numeric_limits<double>::infinity();
+        for (const Disc& d : discs) outside = std::min(outside, torus.shortest(p - d.center).norm() - d.radius);
+        return shade(-outside, relief);
+    });
+}
+
+}  // namespace fretwork::drawing

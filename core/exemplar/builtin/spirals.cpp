@@ -1,0 +1,54 @@
+// Spirals: running double spirals, every one holding hands with its neighbours.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/exemplar/builtin/drawing.h"
+#include "core/exemplar/builtin/families.h"
+
+namespace fretwork::drawing {
+namespace {
+
+constexpr double kPitch = 96, kHalfLine = 4.7;
+
+/// One arm from near the middle outwards, ending on the right (`turn` 0) or on the left (`turn` pi) half-way to the
+/// neighbour.
+std::vector<Vec2> arm(const Vec2& center, double handed, double turn) {
+    constexpr double kInner = 5.5, kTurns = 1.25, kOuter = kPitch / 2;
+    std::vector<Vec2> points;
+    constexpr int kSteps = 60;
+    for (int k = 0; k <= kSteps; ++k) {
+        const double t = static_cast<double>(k) / kSteps;
+        const double a = turn + handed * 2 * std::numbers::pi * kTurns * (t - 1);
+        const double r = kInner + (kOuter - kInner) * std::pow(t, 1.0);
+        points.push_back(center + r * Vec2(std::cos(a), std::sin(a)));
+    }
+    return points;
+}
+
+}  // namespace
+
+PatternPictures draw_spirals() {
+    const Torus torus{192, 192};
+    std::vector<Stroke> strokes;
+    for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j) {
+            const Vec2 center(kPitch * (i + 0.5), kPitch * (j + 0.5));
+            const double handed = (i + j) % 2 == 0 ? 1 : -1;
+            for (const double turn : {0.0, std::numbers::pi}) {
+                std::vector<Vec2> points = arm(center, handed, turn);
+                std::vector<double> radius(points.size(), kHalfLine);
+                strokes.emplace_back(std::move(points), std::move(radius));
+            }
+        }
+    const Relief relief{ink(0x5A2A0C), ink(0xE9B872), ink(0x123C3A), ink(0x1F6B62), 4.5, 8.0};
+    return draw(192, 192, [&](const Vec2& p) {
+        double distance = Stroke::kNear;
+        for (const Stroke& s : strokes) distance = smooth_min(distance, s.distance(p, torus), 4.0);
+        return shade(distance, relief);
+    });
+}
+
+}  // namespace fretwork::drawing
