@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
+#include "core/base/run_control.h"
 #include "core/exemplar/exemplar.h"
 #include "core/mesh/region.h"
 #include "core/shell/surface_voxels.h"
@@ -14,12 +16,24 @@ namespace fretwork {
 /// Signed distance to the pattern's border along the surface, in voxels, about distance-valued near
 /// zero, negative in solid. The labels say where the border runs below the voxel scale; the voxel
 /// states, which reinforcement and enlargement have changed, say on which side of it each voxel
-/// lies. Safe to query from several threads. References must outlive it.
+/// lies. Constant along the surface normal by construction, as it is asked on the surface only.
+///
+/// Border  where the labels of neighbouring voxels agree with each other and with the states, it is
+///         the zero line of the exemplar's feature distance; elsewhere it is that of the states'
+///         geodesic distance, smoothed along its own level lines by at most half a voxel.
+/// Safe to query from several threads. References must outlive it.
+/// Cost  building about 2 s per million voxels; a query about a microsecond.
 class PatternField {
   public:
+    /// \param mesh  from which `shell` was voxelised: a point's triangle tells which sheet it is on
     /// \param keep  regions that stay solid up to a clean border; may be empty
-    PatternField(const SurfaceVoxels& shell, const SolidStates& solid, const TexelFrames& frames,
-                 const Exemplar& exemplar, const RegionField& keep);
+    /// \throws InvalidInput  states or frames that do not match the shell
+    PatternField(const TriangleMesh& mesh, const SurfaceVoxels& shell, const SolidStates& solid,
+                 const TexelFrames& frames, const Exemplar& exemplar, const RegionField& keep,
+                 const RunControl& run = {});
+    /// A pattern known by formula; the functions get a surface point and its triangle.
+    PatternField(std::function<double(const Vec3&, std::uint32_t)> signed_distance_voxels,
+                 std::function<Rgb8(const Vec3&, std::uint32_t)> color);
     ~PatternField();
     PatternField(PatternField&&) noexcept;
     PatternField& operator=(PatternField&&) noexcept;
@@ -32,7 +46,7 @@ class PatternField {
 
   private:
     struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<const Impl> impl_;
 };
 
 }  // namespace fretwork

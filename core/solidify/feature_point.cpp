@@ -1,0 +1,156 @@
+#include "core/solidify/feature_point.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace fretwork {
+namespace {
+
+/// Facets folded by less than this leave less than a twentieth of a voxel of chamfer.
+constexpr float kFoldCosine = 0.94F;  // 20 degrees
+
+constexpr double kAccepted = 0.15;   // voxels off the faces
+constexpr double kOvershoot = 0.12;  // barycentric; the faces' curvature may carry the point a little outside
+
+using Vec2d = Eigen::Vector2d;
+using Mat2d = Eigen::Matrix2d;
+
+/// Plane coordinates of one lattice triangle, in voxels from its first corner.
+class TrianglePlane {
+  public:
+    TrianglePlane(const std::array<EdgeEnd, 3>& corner, double voxel_mm)
+        : origin_(corner[0].position_mm), voxel_mm_(voxel_mm) {
+        const Vec3 u = (corner[1].position_mm - origin_) / voxel_mm, v = (corner[2].position_mm - origin_) / voxel_mm;
+        x_axis_ = u.normalized();
+        y_axis_ = (v - v.dot(x_axis_) * x_axis_).normalized();
+        sides_.col(0) = Vec2d(u.dot(x_axis_), 0.0);
+        sides_.col(1) = Vec2d(v.dot(x_axis_), v.dot(y_axis_));
+        inverse_ = sides_.inverse();
+    }
+
+    [[nodiscard]] Vec2d flat(const Vec3& p) const { return direction((p - origin_) / voxel_mm_); }
+    [[nodiscard]] Vec2d direction(const Vec3& d) const { return {d.dot(x_axis_), d.dot(y_axis_)}; }
+    [[nodiscard]] Vec3 lift(const Vec2d& q) const { return origin_ + voxel_mm_ * (q.x() * x_axis_ + q.y() * y_axis_); }
+
+    /// Gradient of the linear function with these values at the corners.
+    [[nodiscard]] Vec2d gradient(double f0, double f1, double f2) const {
+        return inverse_.transpose() * Vec2d(f1 - f0, f2 - f0);
+    }
+
+    /// Moves q inside by at least `margin`; false if it was far outside.
+    [[nodiscard]] bool clamp(Vec2d& q, double margin) const {
+        const Vec2d b = inverse_ * q;
+        Vec3 bary(1.0 - b.x() - b.y(), b.x(), b.y());
+        if (!(bary.minCoeff() > -kOvershoot)) return false;
+        if (bary.minCoeff() >= margin) return true;
+        bary = bary.cwiseMax(2.0 * margin);
+        bary /= bary.sum();
+        q = sides_ * Vec2d(bary[1], bary[2]);
+        return true;
+    }
+
+  private:
+    Vec3 origin_, x_axis_, y_axis_;
+    double voxel_mm_;
+    Mat2d sides_, inverse_;
+};
+
+Vec2d plane_gradient(const TrianglePlane& plane, const std::array<EdgeEnd, 3>& corner, const WallVertex& v) {
+    if (v.face != WallFace::kPattern) return plane.direction(v.normal.cast<double>());
+    return plane.gradient(corner[0].pattern, corner[1].pattern, corner[2].pattern);
+}
+
+double face_value(const WallField& field, const WallSample& s, WallFace face) {
+    switch (face) {
+        case WallFace::kUpper:
+            return s.phi - field.limits().upper;
+        case WallFace::kLower:
+            return field.limits().lower - s.phi;
+        case WallFace::kPattern:
+            break;
+    }
+    return s.pattern;
+}
+
+/// The sign of phi all over the lattice triangle, or 0 if the surface passes through it.
+double common_sign(const std::array<EdgeEnd, 3>& corner) {
+    const bool negative = corner[0].phi < 0.0;
+    for (const EdgeEnd& c : corner)
+        if ((c.phi < 0.0) != negative) return 0.0;
+    return negative ? -1.0 : 1.0;
+}
+
+}  // namespace
+
+bool edge_runs_between(const WallVertex& a, const WallVertex& b) {
+    if (a.face != b.face) return true;
+    return a.face != WallFace::kPattern && a.normal.dot(b.normal) < kFoldCosine;
+}
+
+std::optional<WallVertex> feature_on_triangle(const WallField& field, const std::array<EdgeEnd, 3>& corner,
+                                              const WallVertex& a, const WallVertex& b, double margin) {
+    const TrianglePlane plane(corner, field.voxel_mm());
+    Mat2d jacobian;
+    jacobian.row(0) = plane_gradient(plane, corner, a).transpose();
+    jacobian.row(1) = plane_gradient(plane, corner, b).transpose();
+    const double sine = std::abs(jacobian.determinant()) / (jacobian.row(0).norm() * jacobian.row(1).norm());
+    if (!(sine > 0.1)) return std::nullopt;
+    const Mat2d step = jacobian.inverse();
+    Vec2d q =
+        step * Vec2d(jacobian.row(0).dot(plane.flat(a.position_mm)), jacobian.row(1).dot(plane.flat(b.position_mm)));
+    if (!plane.clamp(q, margin)) return std::nullopt;
+
+    const double sign = common_sign(corner);
+    WallVertex v;
+    v.feature = true;
+    v.face = a.face == WallFace::kPattern ? b.face : a.face;
+    for (int round = 0; round < 3; ++round) {
+        const WallSample s = field.sample(plane.lift(q), sign);
+        if (!s.found) return std::nullopt;
+        v.triangle = s.triangle;
+        const Vec2d off(face_value(field, s, a.face), face_value(field, s, b.face));
+        const double worst = off.cwiseAbs().maxCoeff();
+        // On a fold both faces are one function; its value says whether the facets' planes were the right ones.
+        if (worst < 2e-3 || a.face == b.face || round == 2) {
+            if (worst > kAccepted) return std::nullopt;
+            v.position_mm = plane.lift(q);
+            return v;
+        }
+        q -= step * off;
+        if (!plane.clamp(q, margin)) return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+std::optional<WallVertex> corner_in_tetrahedron(const std::array<EdgeEnd, 4>& corner,
+                                                std::span<const WallVertex* const> loop, double margin) {
+    Eigen::Matrix3d sides;
+    for (int k = 0; k < 3; ++k)
+        sides.col(k) = corner[static_cast<std::size_t>(k) + 1].position_mm - corner[0].position_mm;
+    const Eigen::Matrix3d inverse = sides.inverse();
+    const Vec3 rise(corner[1].pattern - corner[0].pattern, corner[2].pattern - corner[0].pattern,
+                    corner[3].pattern - corner[0].pattern);
+    const Vec3 pattern_normal = (inverse.transpose() * rise).normalized();
+
+    Vec3 center = Vec3::Zero();
+    for (const WallVertex* v : loop) center += v->position_mm / static_cast<double>(loop.size());
+    Eigen::Matrix3d planes = 1e-4 * Eigen::Matrix3d::Identity();
+    Vec3 right = Vec3::Zero();
+    WallVertex result;
+    for (const WallVertex* v : loop) {
+        if (v->feature) continue;
+        const Vec3 n = v->face == WallFace::kPattern ? pattern_normal : v->normal.cast<double>();
+        if (!n.allFinite()) return std::nullopt;
+        planes += n * n.transpose();
+        right += n * n.dot(v->position_mm - center);
+        result.triangle = v->triangle;
+    }
+    result.feature = true;
+    result.position_mm = center + planes.ldlt().solve(right);
+    const Vec3 b = inverse * (result.position_mm - corner[0].position_mm);
+    if (!(std::min(b.minCoeff(), 1.0 - b.sum()) > margin)) return std::nullopt;
+    return result;
+}
+
+}  // namespace fretwork

@@ -1,0 +1,225 @@
+#include "core/solidify/pattern_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/enlarge/geodesic_links.h"
+#include "core/solidify/shell_index.h"
+#include "core/solidify/smooth_border.h"
+#include "core/solidify/texel_sampler.h"
+
+namespace fretwork {
+namespace {
+
+/// Radius of the kernel that blends the voxels' own views of the pattern, in voxels.
+constexpr double kKernel = 1.6;
+
+/// How far a label may move the border from where the states put it, in voxels.
+constexpr double kLabelSlack = 0.75;
+
+/// Two neighbouring labels tell the same story if one predicts the other's distance to within this, in voxels.
+constexpr double kAgreement = 0.4;
+
+std::vector<Vec3f> unit_normals(const TriangleMesh& mesh) {
+    std::vector<Vec3f> normals(mesh.triangles.size(), Vec3f::Zero());
+    for (std::size_t t = 0; t < normals.size(); ++t) {
+        const auto& [a, b, c] = mesh.triangles[t];
+        const Vec3& p = mesh.positions_mm[a];
+        const Vec3 n = (mesh.positions_mm[b] - p).cross(mesh.positions_mm[c] - p);
+        const double length = n.norm();
+        if (length > 0.0) normals[t] = (n / length).cast<float>();
+    }
+    return normals;
+}
+
+class VoxelPattern {
+  public:
+    VoxelPattern(const TriangleMesh& mesh, const SurfaceVoxels& shell, const SolidStates& solid,
+                 const TexelFrames& frames, const Exemplar& exemplar, const RegionField& keep, const RunControl& run)
+        : shell_(shell),
+          frames_(frames),
+          keep_(keep),
+          index_(shell),
+          sampler_(exemplar),
+          links_(link_two_rings(shell, run)),
+          normals_(unit_normals(mesh)) {
+        wrap_frames(exemplar);
+        build_border(solid, run);
+    }
+
+    [[nodiscard]] double signed_distance_voxels(const Vec3& p, std::uint32_t triangle) const {
+        double f = blended(p, triangle);
+        if (!keep_.empty()) f = std::min(f, keep_.signed_distance_mm(p, triangle) / shell_.grid.voxel_mm);
+        return f;
+    }
+
+    [[nodiscard]] Rgb8 color(const Vec3& p, std::uint32_t triangle) const {
+        const VoxelIndex v = index_.nearest(p, normals_[triangle]);
+        if (v == ShellIndex::kNone) return {};
+        const auto [u, w] = texel(v, p);
+        return sampler_.solid_color(u, w);
+    }
+
+  private:
+    void wrap_frames(const Exemplar& exemplar) {
+        pixels_per_voxel_.resize(frames_.size());
+        origin_.resize(frames_.size());
+        const double width = exemplar.width, height = exemplar.height;
+        for (std::size_t v = 0; v < frames_.size(); ++v) {
+            const double u = static_cast<double>(frames_[v].u), w = static_cast<double>(frames_[v].v);
+            origin_[v] = Vec2(u - width * std::floor(u / width), w - height * std::floor(w / height));
+            const double scale = std::sqrt(static_cast<double>(frames_[v].du.norm() * frames_[v].dv.norm()));
+            pixels_per_voxel_[v] = static_cast<float>(scale > 1e-6 ? scale : 1.0);
+        }
+    }
+
+    [[nodiscard]] std::pair<double, double> texel(VoxelIndex v, const Vec3& p) const {
+        const Vec3f d = ((p - shell_.points_mm[v]) / shell_.grid.voxel_mm).cast<float>();
+        return {origin_[v].x() + static_cast<double>(frames_[v].du.dot(d)),
+                origin_[v].y() + static_cast<double>(frames_[v].dv.dot(d))};
+    }
+
+    /// The pattern's distance at p as the label of v sees it, in voxels.
+    [[nodiscard]] double label_distance(VoxelIndex v, const Vec3& p) const {
+        const auto [u, w] = texel(v, p);
+        return sampler_.feature_distance(u, w) / static_cast<double>(pixels_per_voxel_[v]);
+    }
+
+    void build_border(const SolidStates& solid, const RunControl& run) {
+        const std::size_t n = shell_.size();
+        std::vector<float> label(n);
+        parallel_for(n, 4096, [&](std::size_t v) {
+            label[v] = static_cast<float>(label_distance(static_cast<VoxelIndex>(v), shell_.points_mm[v]));
+        });
+        const VoxelMask states = carved_states(solid, label);
+        const std::vector<float> from_states = signed_border_distance(links_, states, run);
+        trusted_ = trusted_labels(label, states);
+        value_ = from_states;
+        for (std::size_t v = 0; v < n; ++v)
+            if (trusted_[v] != 0)
+                value_[v] = std::clamp(label[v], from_states[v] - static_cast<float>(kLabelSlack),
+                                       from_states[v] + static_cast<float>(kLabelSlack));
+        smooth_along_levels(shell_, links_, from_states, trusted_, value_, run);
+        gradient_ = surface_gradient(shell_, links_, value_);
+    }
+
+    /// States with the kept regions taken out where the pattern itself is empty: those regions come back with their
+    /// own exact border, which the voxels' would only roughen.
+    [[nodiscard]] VoxelMask carved_states(const SolidStates& solid, const std::vector<float>& label) const {
+        VoxelMask states(shell_.size());
+        parallel_for(shell_.size(), 4096, [&](std::size_t v) {
+            states[v] = solid[v] == SolidState::kSolid ? 1 : 0;
+            if (states[v] != 0 && label[v] > 0.0F && !keep_.empty() &&
+                keep_.signed_distance_mm(shell_.points_mm[v], shell_.triangles[v]) <= 0.0)
+                states[v] = 0;
+        });
+        return states;
+    }
+
+    /// A label may draw the border if it agrees with the states all around and with the labels next to it.
+    [[nodiscard]] VoxelMask trusted_labels(const std::vector<float>& label, const VoxelMask& states) const {
+        const auto agrees = [&](VoxelIndex v) {
+            return (label[v] < 0.0F) == (states[v] != 0) || std::abs(label[v]) < 0.2F;
+        };
+        VoxelMask trusted(shell_.size());
+        parallel_for(shell_.size(), 4096, [&](std::size_t i) {
+            const auto v = static_cast<VoxelIndex>(i);
+            bool good = agrees(v);
+            for (const VoxelIndex u : shell_.adjacency.of(v)) {
+                if (!good) break;
+                good = agrees(u) && (std::abs(label[u]) > 3.0F || std::abs(label_distance(v, shell_.points_mm[u]) -
+                                                                           static_cast<double>(label[u])) < kAgreement);
+            }
+            trusted[v] = good ? 1 : 0;
+        });
+        return trusted;
+    }
+
+    /// The pattern at p as voxel v sees it: its label's feature distance where that is trusted, within reach of the
+    /// plane through its own value.
+    [[nodiscard]] double seen_from(VoxelIndex v, const Vec3& p) const {
+        const Vec3f d = ((p - shell_.points_mm[v]) / shell_.grid.voxel_mm).cast<float>();
+        const double plane = static_cast<double>(value_[v] + gradient_[v].dot(d));
+        if (trusted_[v] == 0) return plane;
+        return std::clamp(label_distance(v, p), plane - kLabelSlack, plane + kLabelSlack);
+    }
+
+    /// Blend over the voxels of the sheet within the kernel. Its weights fall to zero with zero slope at the kernel's
+    /// rim, so that the field has no step where a voxel comes into reach.
+    [[nodiscard]] double blended(const Vec3& p, std::uint32_t triangle) const {
+        const Vec3f& normal = normals_[triangle];
+        const VoxelIndex base = index_.nearest(p, normal);
+        if (base == ShellIndex::kNone) return kBorderReach;
+        double sum = 0.0, weights = 0.0;
+        const auto add = [&](VoxelIndex v) {
+            const double r2 = (p - shell_.points_mm[v]).squaredNorm() /
+                              (shell_.grid.voxel_mm * shell_.grid.voxel_mm * kKernel * kKernel);
+            if (r2 >= 1.0) return;
+            // Round a rim of a thin plate the other side is two steps away and does not belong to this one.
+            const double facing = static_cast<double>(normal.dot(shell_.normals[v])) + 0.3;
+            if (facing <= 0.0) return;
+            const double w = (1.0 - r2) * (1.0 - r2) * std::min(facing, 0.5);
+            sum += w * seen_from(v, p);
+            weights += w;
+        };
+        add(base);
+        for (std::uint32_t k = links_.first[base]; k < links_.first[base + 1]; ++k) add(links_.neighbor[k]);
+        return weights > 0.0 ? sum / weights : seen_from(base, p);
+    }
+
+    const SurfaceVoxels& shell_;
+    const TexelFrames& frames_;
+    const RegionField& keep_;
+    ShellIndex index_;
+    TexelSampler sampler_;
+    GeodesicLinks links_;
+    std::vector<Vec2> origin_;
+    std::vector<float> pixels_per_voxel_;
+    VoxelMask trusted_;
+    std::vector<float> value_;
+    std::vector<Vec3f> gradient_;
+    std::vector<Vec3f> normals_;  ///< per triangle of the mesh
+};
+
+}  // namespace
+
+struct PatternField::Impl {
+    std::function<double(const Vec3&, std::uint32_t)> distance;
+    std::function<Rgb8(const Vec3&, std::uint32_t)> color;
+};
+
+PatternField::PatternField(const TriangleMesh& mesh, const SurfaceVoxels& shell, const SolidStates& solid,
+                           const TexelFrames& frames, const Exemplar& exemplar, const RegionField& keep,
+                           const RunControl& run) {
+    if (solid.size() != shell.size() || frames.size() != shell.size())
+        throw InvalidInput("pattern field: " + std::to_string(solid.size()) + " states and " +
+                           std::to_string(frames.size()) + " frames for " + std::to_string(shell.size()) + " voxels");
+    const auto pattern = std::make_shared<const VoxelPattern>(mesh, shell, solid, frames, exemplar, keep, run);
+    impl_ = std::make_unique<const Impl>(
+        Impl{[pattern](const Vec3& p, std::uint32_t t) { return pattern->signed_distance_voxels(p, t); },
+             [pattern](const Vec3& p, std::uint32_t t) { return pattern->color(p, t); }});
+}
+
+PatternField::PatternField(std::function<double(const Vec3&, std::uint32_t)> signed_distance_voxels,
+                           std::function<Rgb8(const Vec3&, std::uint32_t)> color)
+    : impl_(std::make_unique<const Impl>(Impl{std::move(signed_distance_voxels), std::move(color)})) {}
+
+PatternField::~PatternField() = default;
+PatternField::PatternField(PatternField&&) noexcept = default;
+PatternField& PatternField::operator=(PatternField&&) noexcept = default;
+
+double PatternField::signed_distance_voxels(const Vec3& point_mm, std::uint32_t triangle) const {
+    return impl_->distance(point_mm, triangle);
+}
+
+Rgb8 PatternField::color(const Vec3& point_mm, std::uint32_t triangle) const {
+    return impl_->color(point_mm, triangle);
+}
+
+}  // namespace fretwork
