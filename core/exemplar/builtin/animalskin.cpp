@@ -15,7 +15,7 @@ namespace {
 void add_rosette(const Vec2& center, double radius, std::uint64_t item, std::vector<Stroke>& blobs) {
     const int count = random_unit(31, item, 0) < 0.45 ? 2 : 3;
     const double turn = 2 * std::numbers::pi * random_unit(31, item, 1);
-    constexpr double kHalfWidth = 4.6, kBridge = 8.0;
+    constexpr double kHalfWidth = 5.2, kBridge = 8.5;
     const double sector = 2 * std::numbers::pi / count;
     for (int b = 0; b < count; ++b) {
         const auto draw = static_cast<std::uint32_t>(4 * b + 2);
@@ -38,9 +38,9 @@ void add_rosette(const Vec2& center, double radius, std::uint64_t item, std::vec
 
 PatternPictures draw_animalskin() {
     const Torus torus{192, 192};
-    const std::vector<Vec2> centers = scatter(torus, 15, 12, 30);
+    const std::vector<Vec2> centers = scatter(torus, 16, 16, 30);
     std::vector<Stroke> blobs;
-    for (std::size_t i = 0; i < centers.size(); ++i) add_rosette(centers[i], 14.0, i, blobs);
+    for (std::size_t i = 0; i < centers.size(); ++i) add_rosette(centers[i], 14.5, i, blobs);
     const Ink coat = ink(0xF0C987), warm = ink(0xC98A3E), rim = ink(0x8A5620);
     const Ink spot = ink(0x2A1A10), spot_core = ink(0x3B2415);
     return draw(192, 192, [&](const Vec2& p) -> Sample {

@@ -1,8 +1,7 @@
 // Branches: an open network grown along the edges of a Voronoi diagram, thick boughs and thinner twigs.
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
+#include <numbers>
 
 #include "core/exemplar/builtin/drawing.h"
 #include "core/exemplar/builtin/families.h"
@@ -11,17 +10,19 @@
 namespace fretwork::drawing {
 
 PatternPictures draw_branches() {
-    const Torus torus{208, 208};
-    const Voronoi cells(torus, scatter(torus, 16, 2, 47));
+    constexpr double kWidth = 192, kHeight = 224, kStretch = 1.75, kSquash = 1.12;
+    const Torus torus{kWidth, kHeight / kStretch};
+    const Voronoi cells(torus, scatter(torus, 16, 3, 47));
     const Ink bark = ink(0x4A2C17), wood = ink(0xB5793F), sap = ink(0xE3B778);
     const Ink sky = ink(0xDCEBDD), leaf = ink(0x9CC5A1);
-    return draw(208, 208, [&](const Vec2& p) -> Sample {
-        const VoronoiWall wall = cells.wall(p, 5.0);
-        // Between two boughs the wall is thick where either cell says so.
-        const double own = random_unit(48, wall.cell, 0);
-        const double other = random_unit(48, wall.neighbor, 0);
-        const double half_width = 4.2 + 6.0 * std::pow(std::max(own * other, 0.0), 1.0);
-        const double distance = wall.distance - half_width;
+    return draw(static_cast<int>(kWidth), static_cast<int>(kHeight), [&](const Vec2& p) -> Sample {
+        // Cells drawn out upwards, and walls that slowly thicken and thin, read as boughs and twigs.
+        const Vec2 t = 2 * std::numbers::pi * p.cwiseQuotient(Vec2(kWidth, kHeight));
+        const double bend = 7 * std::sin(t.y() + 0.8) + 4 * std::sin(2 * t.y() - t.x());
+        const Vec2 q((p.x() + bend), p.y() / kStretch);
+        const double thick = std::sin(t.x() + 0.7 * std::sin(t.y()) + 0.4) * std::sin(t.y() + t.x() + 1.9);
+        // The stretch foreshortens distances along y; the slope of the field makes up for it.
+        const double distance = cells.wall(q, 4.0).distance * kSquash - (5.7 + 1.7 * thick);
         if (distance < 0) return {distance, mix(bark, mix(wood, sap, (-distance - 3) / 6), -distance / 4)};
         return {distance, mix(leaf, sky, distance / 12)};
     });

@@ -11,18 +11,18 @@ namespace fretwork::drawing {
 namespace {
 
 // The plait lives on diamonds: squares of side kTile standing on a corner, whose sides the strands cross in the middle.
-constexpr int kAcross = 8;                                    // half diagonals along each side of the picture
+constexpr int kAcross = 6;                                    // half diagonals along each side of the picture
 constexpr double kHalfDiagonal = 192.0 / kAcross;             // px
 constexpr double kTile = kHalfDiagonal * 1.4142135623730951;  // side of a diamond, px
-constexpr double kHalfStrand = 6.4;
+constexpr double kHalfStrand = 7.6;
 
 enum class Tile { kCross, kTurnUp, kTurnSide };
 
 /// A repeating arrangement of turns that closes some strands into loops.
 Tile tile_at(int i, int j) {
     const int a = ((i % kAcross) + kAcross) % kAcross, b = ((j % kAcross) + kAcross) % kAcross;
-    if ((a == 0 && b == 4) || (a == 4 && b == 0)) return Tile::kTurnUp;
-    if ((a == 0 && b == 0) || (a == 4 && b == 4)) return Tile::kTurnSide;
+    if (a == 3 && b == 3) return Tile::kTurnUp;
+    if (a == 0 && b == 0) return Tile::kTurnSide;
     return Tile::kCross;
 }
 
@@ -61,7 +61,7 @@ PatternPictures draw_celtic() {
         const Strand s = strand_at(p);
         const double distance = s.from_middle - kHalfStrand;
         if (distance > 0) return {distance, mix(moss, fern, distance / 8)};
-        Ink color = mix(edge, mix(gold, shine, (-distance - 3.2) / 3), -distance / 3.2);
+        Ink color = mix(edge, mix(gold, shine, (-distance - 3.6) / 3.6), -distance / 3.6);
         // The strand below darkens towards the one above.
         color = mix(edge, color, s.under / 3.5);
         return {distance, color};

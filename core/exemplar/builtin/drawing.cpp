@@ -13,7 +13,7 @@
 namespace fretwork::drawing {
 namespace {
 
-constexpr int kSamplesPerAxis = 4;
+constexpr int kSamplesPerAxis = 3;
 
 Rgba8 to_pixel(const Ink& sum, float scale) {
     return {to_byte(linear_to_srgb(sum.r * scale)), to_byte(linear_to_srgb(sum.g * scale)),

@@ -43,7 +43,7 @@ struct Torus {
     [[nodiscard]] Vec2 shortest(Vec2 way) const;
 };
 
-/// Averages 4 x 4 samples per pixel. `look` is called from several threads.
+/// Averages 3 x 3 samples per pixel. `look` is called from several threads.
 PatternPictures draw(int width_px, int height_px, const std::function<Sample(const Vec2&)>& look);
 
 // ---- distances, px; negative inside ------------------------------------------------------------

@@ -57,7 +57,8 @@ PatternPictures draw_keyboard() {
     return draw(static_cast<int>(kSide), static_cast<int>(kSide), [&](const Vec2& p) -> Sample {
         const Key key = key_at(p);
         if (key.distance > 0) return {key.distance, mix(gap, slot, key.distance / 4)};
-        const auto hue = static_cast<std::size_t>(4 * random_unit(71, static_cast<std::uint64_t>(key.number), 0));
+        const auto hue =
+            static_cast<std::size_t>(3.99 * std::pow(random_unit(71, static_cast<std::uint64_t>(key.number), 0), 1.4));
         return {key.distance, mix(skirts[hue], caps[hue], (-key.distance - 1) / 5)};
     });
 }

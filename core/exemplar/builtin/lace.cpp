@@ -42,13 +42,13 @@ PatternPictures draw_lace() {
         for (int r = 0; r < 2; ++r) {
             const Vec2 center((r + 0.5) * kWidth / 2.0, (r + 0.5) * kHeight / 2.0);
             const Vec2 q = torus.shortest(p - center);
-            hole = std::min({hole, q.norm() - 8.0, drop_ring(q, 6, 35.0, 11.5, 5.0, std::numbers::pi / 6),
-                             disc_ring(q, 6, 48.0, 5.2, 0.0)});
+            hole = std::min({hole, q.norm() - 8.5, drop_ring(q, 6, 35.0, 13.0, 5.0, std::numbers::pi / 6),
+                             disc_ring(q, 6, 52.0, 7.0, 0.0)});
             // The middle of three rosettes: one round opening each.
             for (int k = 0; k < 6; ++k) {
                 const double a = std::numbers::pi / 6 + k * std::numbers::pi / 3;
                 const Vec2 triple = center + kWidth / std::numbers::sqrt3 * Vec2(std::cos(a), std::sin(a));
-                hole = std::min(hole, torus.shortest(p - triple).norm() - 12.0);
+                hole = std::min(hole, torus.shortest(p - triple).norm() - 17.0);
             }
         }
         return shade(-hole, relief);

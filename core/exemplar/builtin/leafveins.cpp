@@ -26,6 +26,10 @@ PatternPictures draw_leafveins() {
     std::vector<Vec2> rib;
     for (double y = -4; y <= kSide + 4; y += 4) rib.emplace_back(midrib_x(y), y);
     veins.emplace_back(rib, std::vector<double>(rib.size(), 7.5));
+    // The margin between two leaves.
+    std::vector<Vec2> margin;
+    for (double y = -4; y <= kSide + 4; y += 4) margin.emplace_back(midrib_x(y) - kHalf, y);
+    veins.emplace_back(margin, std::vector<double>(margin.size(), 4.6));
     // Side veins leave the midrib by turns and bend up to meet the next leaf's margin.
     for (int k = 0; k < 4; ++k)
         for (const double side : {-1.0, 1.0}) {
@@ -43,7 +47,7 @@ PatternPictures draw_leafveins() {
                 const double lean = 10 * (random_unit(81, static_cast<std::uint64_t>(k), side > 0 ? 1 : 0) - 0.5);
                 veins.emplace_back(
                     spline({{x, y}, {x + side * 5, y - kPitch * 0.5}, {x + lean * 0.3, y - kPitch}}, 6, false),
-                    std::vector<double>(13, 4.0));
+                    std::vector<double>(13, 4.3));
             }
         }
     const Relief relief{ink(0x2F5D1E), ink(0xC5DE7A), ink(0x0F2A1A), ink(0x1E4A2C), 5.0, 8.0};

@@ -30,7 +30,7 @@ PatternPictures draw_scales() {
             }
         const double r = way.norm();
         const double outer = std::abs(r - (kRadius - kHalfBand)) - kHalfBand;
-        const double inner = std::abs(r - (kRadius - 4.6 * kHalfBand)) - kHalfBand * 0.92;
+        const double inner = std::abs(r - (kRadius - 5.1 * kHalfBand)) - kHalfBand * 0.92;
         const double distance = std::min(outer, inner);
         if (distance > 0) return {distance, mix(deep, sea, distance / 5)};
         const Ink body = outer < inner ? mix(jade, foam, (-distance - 2) / 3) : mix(gold, foam, (-distance - 3) / 3);

@@ -11,7 +11,8 @@
 namespace fretwork::drawing {
 namespace {
 
-constexpr double kPitch = 96, kHalfLine = 4.7;
+// Rows lie in each other's notches: the spacing of a triangular lattice, 96 sqrt(3) / 2 = 83.1.
+constexpr double kPitch = 96, kRowPitch = 83, kHalfLine = 4.8;
 
 /// One arm from near the middle outwards, ending on the right (`turn` 0) or on the left (`turn` pi) half-way to the
 /// neighbour.
@@ -22,7 +23,7 @@ std::vector<Vec2> arm(const Vec2& center, double handed, double turn) {
     for (int k = 0; k <= kSteps; ++k) {
         const double t = static_cast<double>(k) / kSteps;
         const double a = turn + handed * 2 * std::numbers::pi * kTurns * (t - 1);
-        const double r = kInner + (kOuter - kInner) * std::pow(t, 1.0);
+        const double r = kInner + (kOuter - kInner) * t;
         points.push_back(center + r * Vec2(std::cos(a), std::sin(a)));
     }
     return points;
@@ -31,12 +32,12 @@ std::vector<Vec2> arm(const Vec2& center, double handed, double turn) {
 }  // namespace
 
 PatternPictures draw_spirals() {
-    const Torus torus{192, 192};
+    const Torus torus{2 * kPitch, 2 * kRowPitch};
     std::vector<Stroke> strokes;
     for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j) {
-            const Vec2 center(kPitch * (i + 0.5), kPitch * (j + 0.5));
-            const double handed = (i + j) % 2 == 0 ? 1 : -1;
+            const Vec2 center(kPitch * (i + 0.25 + 0.5 * j), kRowPitch * (j + 0.5));
+            const double handed = j == 0 ? 1 : -1;
             for (const double turn : {0.0, std::numbers::pi}) {
                 std::vector<Vec2> points = arm(center, handed, turn);
                 std::vector<double> radius(points.size(), kHalfLine);
@@ -44,7 +45,7 @@ PatternPictures draw_spirals() {
             }
         }
     const Relief relief{ink(0x5A2A0C), ink(0xE9B872), ink(0x123C3A), ink(0x1F6B62), 4.5, 8.0};
-    return draw(192, 192, [&](const Vec2& p) {
+    return draw(192, 166, [&](const Vec2& p) {
         double distance = Stroke::kNear;
         for (const Stroke& s : strokes) distance = smooth_min(distance, s.distance(p, torus), 4.0);
         return shade(distance, relief);

@@ -50,16 +50,16 @@ TuringField::TuringField(const TuringSettings& settings) : side_(settings.side) 
     // The difference of two Gaussians answers most to waves of the wanted period; growth saturates
     // through the hyperbolic tangent.
     const double narrow = settings.period_cells * 0.16, wide = settings.period_cells * 0.34;
-    const auto blur = [&](const std::vector<double>& in, double sigma) {
-        return blur_axis(blur_axis(in, side_, false, sigma), side_, true, sigma * settings.stretch);
+    const auto blur = [&](const std::vector<double>& in, double sigma, double stretch) {
+        return blur_axis(blur_axis(in, side_, false, sigma), side_, true, sigma * stretch);
     };
     for (int step = 0; step < settings.steps; ++step) {
-        const std::vector<double> activator = blur(value_, narrow);
-        const std::vector<double> inhibitor = blur(activator, wide);
+        const std::vector<double> activator = blur(value_, narrow, settings.stretch);
+        const std::vector<double> inhibitor = blur(activator, wide, 1.0);
         for (std::size_t i = 0; i < count; ++i)
             value_[i] = std::tanh(4.0 * (activator[i] - inhibitor[i] + settings.bias));
     }
-    value_ = blur(value_, narrow * 0.6);
+    value_ = blur(value_, narrow * 0.6, 1.0);
 }
 
 double TuringField::at(double x, double y) const {

@@ -11,7 +11,7 @@ namespace fretwork::drawing {
 struct TuringSettings {
     int side = 96;             ///< cells per side of the grid
     double period_cells = 14;  ///< distance between stripes
-    double stretch = 1.0;      ///< above 1: stripes run along y
+    double stretch = 1.0;      ///< above 1: stripes run along y; reach of the activator along y over x
     double bias = 0.0;         ///< positive favours solid
     int steps = 60;
     std::uint64_t seed = 1;

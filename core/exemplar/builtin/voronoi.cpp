@@ -1,6 +1,5 @@
 #include "core/exemplar/builtin/voronoi.h"
 
-#include <limits>
 #include <utility>
 
 namespace fretwork::drawing {
@@ -20,15 +19,10 @@ VoronoiWall Voronoi::wall(const Vec2& p, double rounding) const {
     }
     std::vector<double> walls;
     walls.reserve(sites_.size());
-    double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < sites_.size(); ++i) {
         if (i == out.cell) continue;
         const Vec2 to = torus_.shortest(sites_[i] - sites_[out.cell]);
         walls.push_back((to / 2 - out.from_site).dot(to.normalized()));
-        if (walls.back() < least) {
-            least = walls.back();
-            out.neighbor = i;
-        }
     }
     out.distance = smooth_min(walls, rounding);
     return out;

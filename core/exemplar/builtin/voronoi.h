@@ -10,10 +10,9 @@ namespace fretwork::drawing {
 
 /// One cell and its neighbours, seen from a point.
 struct VoronoiWall {
-    std::size_t cell = 0;      ///< whose site is nearest
-    std::size_t neighbor = 0;  ///< behind the nearest wall
-    double distance = 0;       ///< to the wall, corners of the cell rounded, px; positive
-    Vec2 from_site = {0, 0};   ///< from the site to the point
+    std::size_t cell = 0;     ///< whose site is nearest
+    double distance = 0;      ///< to the wall, corners of the cell rounded, px; positive
+    Vec2 from_site = {0, 0};  ///< from the site to the point
 };
 
 class Voronoi {
