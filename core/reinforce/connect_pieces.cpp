@@ -1,7 +1,6 @@
 #include "core/reinforce/connect_pieces.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 #include "core/base/disjoint_sets.h"
@@ -31,12 +30,9 @@ std::vector<std::vector<VoxelIndex>> spanning_gaps(const Adjacency& graph, const
     return paths;
 }
 
-void paint_exactly(const std::vector<VoxelIndex>& voxels, SolidStates& solid, std::vector<VoxelIndex>& painted) {
-    for (const VoxelIndex v : voxels) {
-        if (solid[v] == SolidState::kSolid) continue;
-        solid[v] = SolidState::kSolid;
-        painted.push_back(v);
-    }
+void make_solid(const std::vector<VoxelIndex>& voxels, SolidStates& solid, std::vector<VoxelIndex>& covered) {
+    for (const VoxelIndex v : voxels) solid[v] = SolidState::kSolid;
+    covered.insert(covered.end(), voxels.begin(), voxels.end());
 }
 
 }  // namespace
@@ -56,34 +52,36 @@ ConnectedPieces connect_pieces(const SurfaceVoxels& shell, const Adjacency& firm
             const bool contact = path.size() == 2;
             if (contact) {
                 const auto filling = contact_filling(shell, firm, solid, path.front(), path.back());
-                if (filling) paint_exactly(*filling, solid, result.painted);
+                if (filling) make_solid(*filling, solid, result.covered);
             } else {
-                const std::vector<VoxelIndex> voxels = painter.paint(path, part, solid);
-                result.painted.insert(result.painted.end(), voxels.begin(), voxels.end());
-                paint_exactly(path, solid, result.painted);
+                const PaintedVoxels bridge = painter.paint(path, part, solid);
+                result.covered.insert(result.covered.end(), bridge.covered.begin(), bridge.covered.end());
             }
+            // The ends too: where the bridge sits on the pattern, the pattern must stay.
+            make_solid(path, solid, result.covered);
             ++(contact ? result.contacts : result.bridges);
         }
     }
-    std::ranges::sort(result.painted);
+    std::ranges::sort(result.covered);
+    const auto repeats = std::ranges::unique(result.covered);
+    result.covered.erase(repeats.begin(), repeats.end());
     return result;
 }
 
 std::vector<VoxelIndex> seed_empty_components(const ShellComponents& shell_components, BridgePainter& painter,
                                               double radius_voxels, SolidStates& solid) {
-    constexpr VoxelIndex kNone = kNoVoxel;
-    std::vector<VoxelIndex> lowest(shell_components.count(), kNone);
+    std::vector<VoxelIndex> lowest(shell_components.count(), kNoVoxel);
     std::vector<std::uint8_t> has_solid(shell_components.count(), 0);
     for (VoxelIndex v = 0; v < solid.size(); ++v) {
         // Voxels are sorted by height first.
-        if (lowest[shell_components.of[v]] == kNone) lowest[shell_components.of[v]] = v;
+        if (lowest[shell_components.of[v]] == kNoVoxel) lowest[shell_components.of[v]] = v;
         if (solid[v] == SolidState::kSolid) has_solid[shell_components.of[v]] = 1;
     }
     std::vector<VoxelIndex> painted;
     for (std::size_t c = 0; c < lowest.size(); ++c) {
         if (has_solid[c] != 0) continue;
-        const std::vector<VoxelIndex> disc = painter.paint_disc(lowest[c], radius_voxels, solid);
-        painted.insert(painted.end(), disc.begin(), disc.end());
+        const PaintedVoxels disc = painter.paint_disc(lowest[c], radius_voxels, solid);
+        painted.insert(painted.end(), disc.covered.begin(), disc.covered.end());
     }
     std::ranges::sort(painted);
     return painted;

@@ -12,7 +12,7 @@
 namespace fretwork {
 
 struct ConnectedPieces {
-    std::vector<VoxelIndex> painted;  ///< made solid, ascending
+    std::vector<VoxelIndex> covered;  ///< all voxels of the bridges and repaired contacts, ascending, without repeats
     std::size_t bridges = 0;          ///< over empty voxels
     std::size_t contacts = 0;         ///< pieces that met in an edge or a corner and now share faces
 };
@@ -29,7 +29,7 @@ ConnectedPieces connect_pieces(const SurfaceVoxels& shell, const Adjacency& firm
                                DilatedPart part, SolidStates& solid, const RunControl& run = {});
 
 /// Gives each component of the shell without a solid voxel a disc around its lowest voxel to start from.
-/// \return the voxels made solid, ascending.
+/// \return the voxels of the discs, ascending.
 std::vector<VoxelIndex> seed_empty_components(const ShellComponents& shell_components, BridgePainter& painter,
                                               double radius_voxels, SolidStates& solid);
 

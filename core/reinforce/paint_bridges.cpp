@@ -17,13 +17,21 @@ double squared_distance(const VoxelCoord& a, const VoxelCoord& b) {
     return sum;
 }
 
+/// The discs of a path overlap: what they cover is listed several times.
+void sort_once(PaintedVoxels& painted) {
+    std::ranges::sort(painted.added);
+    std::ranges::sort(painted.covered);
+    const auto repeats = std::ranges::unique(painted.covered);
+    painted.covered.erase(repeats.begin(), repeats.end());
+}
+
 }  // namespace
 
 BridgePainter::BridgePainter(const SurfaceVoxels& shell, const Adjacency& firm, double radius_voxels)
     : shell_(&shell), firm_(&firm), radius_voxels_(radius_voxels), seen_(shell.size(), 0) {}
 
 void BridgePainter::flood(VoxelIndex center, double radius_voxels, float least_cosine, SolidStates& solid,
-                          std::vector<VoxelIndex>& painted) {
+                          PaintedVoxels& painted) {
     ++floods_;
     const double limit = radius_voxels * radius_voxels + 1e-9;
     const Vec3f& normal = shell_->normals[center];
@@ -34,8 +42,9 @@ void BridgePainter::flood(VoxelIndex center, double radius_voxels, float least_c
         open_.pop_back();
         if (solid[v] == SolidState::kEmpty) {
             solid[v] = SolidState::kSolid;
-            painted.push_back(v);
+            painted.added.push_back(v);
         }
+        painted.covered.push_back(v);
         for (const VoxelIndex w : firm_->of(v)) {
             if (seen_[w] == floods_ || shell_->normals[w].dot(normal) < least_cosine) continue;
             if (squared_distance(shell_->coords[w], shell_->coords[center]) > limit) continue;
@@ -45,20 +54,20 @@ void BridgePainter::flood(VoxelIndex center, double radius_voxels, float least_c
     }
 }
 
-std::vector<VoxelIndex> BridgePainter::paint(std::span<const VoxelIndex> path, DilatedPart part, SolidStates& solid) {
+PaintedVoxels BridgePainter::paint(std::span<const VoxelIndex> path, DilatedPart part, SolidStates& solid) {
     std::vector<VoxelIndex> centers(path.begin(), path.end());
     if (part == DilatedPart::kGap) std::erase_if(centers, [&](VoxelIndex v) { return solid[v] == SolidState::kSolid; });
-    std::vector<VoxelIndex> painted;
+    PaintedVoxels painted;
     const float least_cosine = part == DilatedPart::kGap ? kSameSheetCosine : kAnyDirection;
     for (const VoxelIndex center : centers) flood(center, radius_voxels_, least_cosine, solid, painted);
-    std::ranges::sort(painted);
+    sort_once(painted);
     return painted;
 }
 
-std::vector<VoxelIndex> BridgePainter::paint_disc(VoxelIndex center, double radius_voxels, SolidStates& solid) {
-    std::vector<VoxelIndex> painted;
+PaintedVoxels BridgePainter::paint_disc(VoxelIndex center, double radius_voxels, SolidStates& solid) {
+    PaintedVoxels painted;
     flood(center, radius_voxels, kAnyDirection, solid, painted);
-    std::ranges::sort(painted);
+    sort_once(painted);
     return painted;
 }
 

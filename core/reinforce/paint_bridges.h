@@ -14,6 +14,11 @@ enum class DilatedPart {
     kGap,        ///< the empty voxels of the path, on their own sheet: normals within 60 degrees
 };
 
+struct PaintedVoxels {
+    std::vector<VoxelIndex> added;    ///< were empty; ascending
+    std::vector<VoxelIndex> covered;  ///< all that the bridge is made of, `added` and voxels solid before; ascending
+};
+
 /// Turns paths solid and dilates them. Keeps scratch memory, so that a bridge costs its own voxels
 /// only. References must outlive it.
 class BridgePainter {
@@ -26,15 +31,13 @@ class BridgePainter {
     /// Makes solid every voxel within the radius (between centres, in voxels) of the dilated part of
     /// `path` that can be reached from there over firm links without leaving the radius. Another
     /// sheet, however near, is never painted.
-    /// \return the voxels that were empty, ascending.
-    std::vector<VoxelIndex> paint(std::span<const VoxelIndex> path, DilatedPart part, SolidStates& solid);
+    PaintedVoxels paint(std::span<const VoxelIndex> path, DilatedPart part, SolidStates& solid);
 
     /// The same around one voxel, with a radius of its own.
-    std::vector<VoxelIndex> paint_disc(VoxelIndex center, double radius_voxels, SolidStates& solid);
+    PaintedVoxels paint_disc(VoxelIndex center, double radius_voxels, SolidStates& solid);
 
   private:
-    void flood(VoxelIndex center, double radius_voxels, float least_cosine, SolidStates& solid,
-               std::vector<VoxelIndex>& painted);
+    void flood(VoxelIndex center, double radius_voxels, float least_cosine, SolidStates& solid, PaintedVoxels& painted);
 
     const SurfaceVoxels* shell_;
     const Adjacency* firm_;

@@ -1,8 +1,9 @@
 #include "core/reinforce/structural_optimizer.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "core/base/error.h"
@@ -10,63 +11,259 @@
 #include "core/reinforce/connect_pieces.h"
 #include "core/reinforce/drop_specks.h"
 #include "core/reinforce/paint_bridges.h"
+#include "core/reinforce/reinforcement_turn.h"
 #include "core/reinforce/repair_contacts.h"
 
 namespace fretwork {
+namespace {
+
+/// Solutions of the equilibrium in one turn. More would spare turns, each with a resynthesis, but bridges that are
+/// already there, blended into the pattern, make better beams than bridges that are only planned.
+constexpr int kSolutionsPerTurn = 2;
+
+template <class T>
+void check_range(const char* name, T value, T least, T most) {
+    if (!(value >= least && value <= most))
+        throw InvalidSetting(std::string("reinforce: ") + name + " is " + std::to_string(value) + "; expected " +
+                             std::to_string(least) + " to " + std::to_string(most));
+}
+
+void check_settings(const ReinforceSettings& s) {
+    constexpr double kMost = 1e6;
+    if (!(s.thickness_mm > 0.0 && s.thickness_mm <= kMost))
+        throw InvalidSetting("reinforce: thickness_mm is " + std::to_string(s.thickness_mm) + "; expected above 0");
+    check_range("pattern_radius_voxels", s.pattern_radius_voxels, 1.5, kMost);
+    check_range("samples", s.samples, 10, 20000);
+    check_range("safety_factor", s.safety_factor, 1.0, kMost);
+    check_range("geodesic_factor", s.geodesic_factor, 0.0, kMost);
+    check_range("soft_factor", s.soft_factor, 1e-8, 1.0);
+    check_range("stress_ratio", s.stress_ratio, 1.0, kMost);
+    check_range("material_budget", s.material_budget, 0.0, 1.0);
+    check_range("batch", s.batch, 1, 10000);
+    check_range("max_iterations", s.max_iterations, 1, 100000);
+}
+
+void check_profile(const SurfaceVoxels& shell, const ForceProfile& profile) {
+    if (profile.cases.empty())
+        throw InvalidInput("reinforce: the force profile has no load case; expected one or more");
+    const auto check = [&](const std::vector<VoxelIndex>& voxels, const LoadCase& load_case) {
+        for (const VoxelIndex v : voxels)
+            if (v >= shell.size())
+                throw InvalidInput("reinforce: load case \"" + load_case.name + "\" names voxel " + std::to_string(v) +
+                                   " of a shell of " + std::to_string(shell.size()));
+    };
+    for (const LoadCase& load_case : profile.cases) {
+        check(load_case.fixed, load_case);
+        for (const PatchLoad& patch : load_case.loads) check(patch.voxels, load_case);
+    }
+}
+
+bool is_self_weight_alone(const ForceProfile& profile) {
+    return std::ranges::all_of(profile.cases, [](const LoadCase& load_case) { return load_case.loads.empty(); });
+}
+
+}  // namespace
 
 struct StructuralOptimizer::Impl {
     const SurfaceVoxels& shell;
+    const ForceProfile& profile;
+    Material material;
     ReinforceSettings settings;
-    std::vector<std::uint8_t> keep;
     Adjacency firm;
     ShellComponents shell_components;
     BridgePainter painter;
-    SolidStates forced;
-    int iteration = 0;
+    std::vector<std::uint8_t> keep;    ///< solid by the user's wish or forced by an earlier turn
+    std::vector<std::uint8_t> forced;  ///< by an earlier turn
 
-    Impl(const SurfaceVoxels& shell_in, const ReinforceSettings& settings_in, std::vector<std::uint8_t> keep_in)
+    // What a turn changes only when it ends well.
+    int iteration = 0;
+    double frozen_median_pa = -1.0;  ///< negative until the first connected pattern was solved
+    std::size_t voxels_left = 0;     ///< of the material budget
+
+    Impl(const SurfaceVoxels& shell_in, const ForceProfile& profile_in, const Material& material_in,
+         const ReinforceSettings& settings_in, std::vector<std::uint8_t> keep_in)
         : shell(shell_in),
+          profile(profile_in),
+          material(material_in),
           settings(settings_in),
-          keep(std::move(keep_in)),
           firm(firm_links(shell.adjacency)),
           shell_components(connected_components(shell.adjacency)),
           painter(shell, firm, settings.pattern_radius_voxels),
-          forced(shell.size(), SolidState::kEmpty) {}
+          keep(std::move(keep_in)),
+          forced(shell.size(), 0),
+          voxels_left(static_cast<std::size_t>(settings.material_budget * static_cast<double>(shell.size()))) {
+        keep.resize(shell.size(), 0);
+    }
+
+    [[nodiscard]] double allowable_pa() const { return 1e6 * material.strength_z_mpa / settings.safety_factor; }
+    [[nodiscard]] double limit_pa(double median_pa) const;
+    [[nodiscard]] SolidStates with_forced(const SolidStates& solid) const;
+    DroppedSpecks drop(SolidStates& state) const;
+    struct Outcome;
+    void connect_and_seed(SolidStates& state, Outcome& outcome, const RunControl& run);
+    void reinforce_as_printed(SolidStates& state, Outcome& outcome, const RunControl& run);
+    void reinforce(SolidStates& state, Outcome& outcome, const RunControl& run);
+    void commit(const SolidStates& before, const SolidStates& after, const Outcome& outcome, ReinforceStep& step);
 };
 
-StructuralOptimizer::StructuralOptimizer(const SurfaceVoxels& shell, const ForceProfile&, const Material&,
-                                         const ReinforceSettings& settings, std::vector<std::uint8_t> keep)
-    : impl_(std::make_unique<Impl>(shell, settings, std::move(keep))) {}
+/// What one turn has found out so far.
+struct StructuralOptimizer::Impl::Outcome {
+    ReinforceRecord record;
+    std::vector<VoxelIndex> covered;  ///< voxels to be forced, with repeats
+    bool asks_for_resynthesis = false;
+    double frozen_median_pa = -1.0;
+    std::size_t voxels_left = 0;
+    std::string stopped_by = "limits met";
+};
+
+/// The allowable stress; where self-weight is the only load, which never comes near it, a multiple of what half of
+/// the edges carry.
+double StructuralOptimizer::Impl::limit_pa(double median_pa) const {
+    const double relative = settings.stress_ratio * median_pa;
+    return is_self_weight_alone(profile) ? std::min(allowable_pa(), relative) : allowable_pa();
+}
+
+SolidStates StructuralOptimizer::Impl::with_forced(const SolidStates& solid) const {
+    SolidStates state = solid;
+    for (std::size_t v = 0; v < state.size(); ++v)
+        if (forced[v] != 0) state[v] = SolidState::kSolid;
+    return state;
+}
+
+DroppedSpecks StructuralOptimizer::Impl::drop(SolidStates& state) const {
+    const double radius = settings.pattern_radius_voxels;
+    SpeckRules rules;
+    rules.least_voxels = static_cast<std::size_t>(std::numbers::pi * radius * radius);
+    return drop_specks(firm, shell_components, keep, rules, state);
+}
+
+void StructuralOptimizer::Impl::connect_and_seed(SolidStates& state, Outcome& outcome, const RunControl& run) {
+    const std::vector<VoxelIndex> seeds =
+        seed_empty_components(shell_components, painter, 2.0 * settings.pattern_radius_voxels, state);
+    const DilatedPart part = settings.rules == ReinforceRules::kPaper ? DilatedPart::kWholePath : DilatedPart::kGap;
+    const ConnectedPieces connected = connect_pieces(shell, firm, painter, part, state, run);
+    outcome.covered.insert(outcome.covered.end(), seeds.begin(), seeds.end());
+    outcome.covered.insert(outcome.covered.end(), connected.covered.begin(), connected.covered.end());
+    outcome.record.bridges_connect += connected.bridges;
+    outcome.asks_for_resynthesis = outcome.asks_for_resynthesis || !seeds.empty() || connected.bridges > 0;
+}
+
+namespace {
+
+void merge_record(const ReinforceRecord& turn, ReinforceRecord& record) {
+    record.bridges_connect += turn.bridges_connect;
+    record.bridges_stress += turn.bridges_stress;
+    record.bridges_geodesic += turn.bridges_geodesic;
+    record.max_score_pa = turn.max_score_pa;
+    record.p99_score_pa = turn.p99_score_pa;
+    record.median_score_pa = turn.median_score_pa;
+    record.average_score_pa = turn.average_score_pa;
+    record.max_geodesic = turn.max_geodesic;
+}
+
+}  // namespace
+
+void StructuralOptimizer::Impl::reinforce_as_printed(SolidStates& state, Outcome& outcome, const RunControl& run) {
+    const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
+    ReinforcementTurn turn(context, painter, state, run);
+    turn.take_stock(run);
+    turn.connect_by_score(run);
+    turn.stress_as_printed(allowable_pa(), run);
+    std::size_t no_budget = std::numeric_limits<std::size_t>::max();
+    if (settings.geodesic_factor > 0.0) turn.geodesics(no_budget, run);
+    turn.paint_selected();
+    merge_record(turn.record(), outcome.record);
+    outcome.covered.insert(outcome.covered.end(), turn.covered().begin(), turn.covered().end());
+    outcome.asks_for_resynthesis = turn.bridges() > 0;
+    if (turn.out_of_candidates()) outcome.stopped_by = "no candidate";
+}
+
+void StructuralOptimizer::Impl::reinforce(SolidStates& state, Outcome& outcome, const RunControl& run) {
+    const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
+    ReinforcementTurn turn(context, painter, state, run);
+    turn.take_stock(run);
+    if (outcome.frozen_median_pa < 0.0) outcome.frozen_median_pa = turn.record().median_score_pa;
+    const double limit = limit_pa(outcome.frozen_median_pa);
+    const bool met = turn.stress_within_budget(limit, kSolutionsPerTurn, outcome.voxels_left, run);
+    // The geodesic criterion looks at what the first one leaves when it is done.
+    if ((met || turn.out_of_candidates()) && settings.geodesic_factor > 0.0) turn.geodesics(outcome.voxels_left, run);
+    merge_record(turn.record(), outcome.record);
+    outcome.covered.insert(outcome.covered.end(), turn.covered().begin(), turn.covered().end());
+    outcome.asks_for_resynthesis = outcome.asks_for_resynthesis || turn.bridges() > 0;
+    if (turn.out_of_budget())
+        outcome.stopped_by = "budget";
+    else if (!met)
+        outcome.stopped_by = "no candidate";
+}
+
+void StructuralOptimizer::Impl::commit(const SolidStates& before, const SolidStates& after, const Outcome& outcome,
+                                       ReinforceStep& step) {
+    step.record = outcome.record;
+    for (const VoxelIndex v : outcome.covered) {
+        if (forced[v] != 0) continue;
+        forced[v] = 1;
+        keep[v] = 1;
+        step.forced_solid.push_back(v);
+        step.record.voxels_added += before[v] == SolidState::kEmpty ? 1u : 0u;
+    }
+    std::ranges::sort(step.forced_solid);
+    step.record.connected = connected_components(firm, after, SolidState::kSolid).count() == shell_components.count();
+    iteration = outcome.record.iteration;
+    frozen_median_pa = outcome.frozen_median_pa;
+    voxels_left = outcome.voxels_left;
+}
+
+StructuralOptimizer::StructuralOptimizer(const SurfaceVoxels& shell, const ForceProfile& profile,
+                                         const Material& material, const ReinforceSettings& settings,
+                                         std::vector<std::uint8_t> keep) {
+    check_settings(settings);
+    if (shell.size() == 0) throw InvalidInput("reinforce: the shell has no voxel");
+    if (!keep.empty() && keep.size() != shell.size())
+        throw InvalidInput("reinforce: " + std::to_string(keep.size()) + " kept marks for a shell of " +
+                           std::to_string(shell.size()) + " voxels");
+    check_profile(shell, profile);
+    impl_ = std::make_unique<Impl>(shell, profile, material, settings, std::move(keep));
+}
 StructuralOptimizer::~StructuralOptimizer() = default;
 StructuralOptimizer::StructuralOptimizer(StructuralOptimizer&&) noexcept = default;
 StructuralOptimizer& StructuralOptimizer::operator=(StructuralOptimizer&&) noexcept = default;
 
 ReinforceStep StructuralOptimizer::step(const SolidStates& solid, const RunControl& run) {
     Impl& self = *impl_;
-    SolidStates state = solid;
-    for (std::size_t v = 0; v < state.size(); ++v)
-        if (self.forced[v] == SolidState::kSolid) state[v] = SolidState::kSolid;
+    if (solid.size() != self.shell.size())
+        throw InvalidInput("reinforce: " + std::to_string(solid.size()) + " states for a shell of " +
+                           std::to_string(self.shell.size()) + " voxels");
+    run.checkpoint("structure", 0.0);
+    const bool printed = self.settings.rules == ReinforceRules::kPaper;
+    const bool last = self.iteration + 1 >= self.settings.max_iterations;
     ReinforceStep result;
-    result.record.iteration = ++self.iteration;
-    result.record.components_before = connected_components(self.shell.adjacency, solid, SolidState::kSolid).count();
-    const double radius = self.settings.pattern_radius_voxels;
-    const SpeckRules specks{static_cast<std::size_t>(std::numbers::pi * radius * radius), 0.2};
-    DroppedSpecks dropped = drop_specks(self.firm, self.shell_components, self.keep, specks, state);
-    result.dropped = std::move(dropped.voxels);
-    result.record.specks_dropped = dropped.pieces;
-    const auto seeds = seed_empty_components(self.shell_components, self.painter, 2 * radius, state);
-    const ConnectedPieces connected =
-        connect_pieces(self.shell, self.firm, self.painter, DilatedPart::kGap, state, run);
-    result.record.bridges_connect = connected.bridges;
-    result.done = seeds.empty() && connected.bridges == 0;
-    if (result.done) repair_contacts(self.shell, self.firm, state);
-    for (VoxelIndex v = 0; v < state.size(); ++v) {
-        if (state[v] == SolidState::kEmpty || solid[v] == SolidState::kSolid) continue;
-        result.forced_solid.push_back(v);
-        self.forced[v] = SolidState::kSolid;
+    Impl::Outcome outcome;
+    outcome.frozen_median_pa = self.frozen_median_pa;
+    outcome.voxels_left = self.voxels_left;
+    outcome.record.iteration = self.iteration + 1;
+    outcome.record.allowable_pa = self.allowable_pa();
+
+    SolidStates state = self.with_forced(solid);
+    outcome.record.components_before = connected_components(self.shell.adjacency, state, SolidState::kSolid).count();
+    if (!printed) {
+        DroppedSpecks specks = self.drop(state);
+        result.dropped = std::move(specks.voxels);
+        outcome.record.specks_dropped = specks.pieces;
     }
-    result.record.voxels_added = result.forced_solid.size();
-    result.record.connected = true;
+    if (!printed || last) self.connect_and_seed(state, outcome, run);
+    if (!last) printed ? self.reinforce_as_printed(state, outcome, run) : self.reinforce(state, outcome, run);
+    self.connect_and_seed(state, outcome, run);
+    result.done = last || !outcome.asks_for_resynthesis;
+    if (result.done) {
+        const std::vector<VoxelIndex> contacts = repair_contacts(self.shell, self.firm, state);
+        outcome.covered.insert(outcome.covered.end(), contacts.begin(), contacts.end());
+        outcome.record.stopped_by = last ? "iterations" : outcome.stopped_by;
+    }
+    // A bridge may have gone over a dropped speck.
+    std::erase_if(result.dropped, [&](VoxelIndex v) { return state[v] == SolidState::kSolid; });
+    run.checkpoint("structure", 1.0);
+
+    self.commit(solid, state, outcome, result);
     return result;
 }
 
