@@ -199,11 +199,9 @@ WeightedLevel coarsen(WeightedLevel& fine, const RunControl& run) {
     join_layers(group_layers(fine.level, run), fine.level, coarse.level);
     average_children(fine, coarse);
     const Adjacency of_children = link_parents(fine.level, coarse.level, run);
-    VoxelGrid grid;
-    for (std::size_t k = 0; k < 3; ++k)
-        for (const VoxelCoord& c : coarse.level.coords) grid.extent[k] = std::max(grid.extent[k], c[k] + 1);
+    const CellRows rows(extent_of(coarse.level.coords), coarse.level.coords);
     coarse.level.adjacency =
-        link_around_common_neighbors(grid, coarse.level.coords, coarse.level.normals, of_children, run);
+        link_around_common_neighbors(rows, coarse.level.coords, coarse.level.normals, of_children, run);
     return coarse;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/base/run_control.h"
+#include "core/shell/cell_rows.h"
 #include "core/shell/surface_voxels.h"
 
 namespace fretwork {
@@ -25,14 +26,14 @@ struct EntryTriangles {
 
 /// Entries in touching cells that share a triangle.
 ///
-/// \param coords  sorted by (z, y, x); several entries may share a cell
+/// \param rows    made from `coords`, sorted by (z, y, x); several entries may share a cell
 /// Cost: linear in the entries and their triangles.
-Adjacency link_shared_triangles(const VoxelGrid& grid, std::span<const VoxelCoord> coords,
+Adjacency link_shared_triangles(const CellRows& rows, std::span<const VoxelCoord> coords,
                                 const EntryTriangles& triangles, const RunControl& run);
 
 /// `direct`, and entries in touching cells that have a common neighbour in `direct` while their
 /// normals do not oppose.
-Adjacency link_around_common_neighbors(const VoxelGrid& grid, std::span<const VoxelCoord> coords,
+Adjacency link_around_common_neighbors(const CellRows& rows, std::span<const VoxelCoord> coords,
                                        std::span<const Vec3f> normals, const Adjacency& direct, const RunControl& run);
 
 }  // namespace fretwork

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/shell/cell_rows.h"
 #include "core/shell/cut_mesh.h"
 #include "core/shell/links.h"
 #include "core/shell/shell_entries.h"
@@ -94,9 +95,10 @@ SurfaceVoxels voxelize(const TriangleMesh& mesh, const VoxelizeSettings& setting
     const EntryTriangles triangles = make_entries(mesh.triangles, grid_points, patches, shell, run);
     patches = {};
     run.checkpoint("voxelize", 0.7);
-    const Adjacency direct = link_shared_triangles(shell.grid, shell.coords, triangles, run);
+    const CellRows rows(shell.grid.extent, shell.coords);
+    const Adjacency direct = link_shared_triangles(rows, shell.coords, triangles, run);
     run.checkpoint("voxelize", 0.85);
-    shell.adjacency = link_around_common_neighbors(shell.grid, shell.coords, shell.normals, direct, run);
+    shell.adjacency = link_around_common_neighbors(rows, shell.coords, shell.normals, direct, run);
     shell.components = components_by_lowest_triangle(shell.adjacency, triangles);
     run.checkpoint("voxelize", 1.0);
     return shell;

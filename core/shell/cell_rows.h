@@ -1,0 +1,100 @@
+// Finds what lies around an entry of a sorted shell without any search tree: by sliding along rows of cells.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/shell/surface_voxels.h"
+
+namespace fretwork {
+
+/// The smallest grid that starts at the cell (0, 0, 0) and holds all of `coords`.
+[[nodiscard]] VoxelCoord extent_of(std::span<const VoxelCoord> coords);
+
+/// Rows of cells along x of a list sorted by (z, y, x), and where each of them starts.
+class CellRows {
+  public:
+    /// \param extent  cells along x, y, z; every coordinate lies in it
+    CellRows(const VoxelCoord& extent, std::span<const VoxelCoord> coords);
+
+    /// Calls `visit(v, w, code)` for v ascending in [begin, end) and w != v ascending over the entries whose
+    /// cells are at most `Reach` away along each axis, the cell of v included. With n = 2 Reach + 1 and d = cell of
+    /// w minus cell of v, code = (d_x + Reach) + n (d_y + Reach) + n^2 (d_z + Reach).
+    /// Cost: n^2 rows per entry; what lies in a row is passed over once per row of entries.
+    template <int Reach, class Visit>
+    void sweep(std::size_t begin, std::size_t end, const Visit& visit) const {
+        std::array<Cursor, (2 * Reach + 1) * (2 * Reach + 1)> cursors;
+        std::size_t used = 0;
+        for (std::size_t v = begin; v < end; ++v) {
+            const VoxelCoord& c = coords_[v];
+            if (v == begin || c[1] != coords_[v - 1][1] || c[2] != coords_[v - 1][2])
+                used = place_cursors(c, Reach, cursors);
+            const int x = c[0];
+            for (std::size_t k = 0; k < used; ++k) {
+                Cursor& cursor = cursors[k];
+                while (cursor.at < cursor.end && x_[cursor.at] < x - Reach) ++cursor.at;
+                for (std::uint32_t w = cursor.at; w < cursor.end && x_[w] <= x + Reach; ++w)
+                    if (w != v) visit(static_cast<VoxelIndex>(v), w, cursor.code + x_[w] - x);
+            }
+        }
+    }
+
+    /// Is the cell of `v` listed more than once?
+    [[nodiscard]] bool shares_cell(VoxelIndex v) const {
+        return (v > 0 && coords_[v - 1] == coords_[v]) || (v + 1 < coords_.size() && coords_[v + 1] == coords_[v]);
+    }
+
+  private:
+    struct Cursor {
+        std::uint32_t at;
+        std::uint32_t end;
+        int code;  ///< of the cell in this row with the x of v
+    };
+
+    /// Cursors at the start of the rows around `c` that hold anything; returns their number.
+    std::size_t place_cursors(const VoxelCoord& c, int reach, std::span<Cursor> cursors) const;
+
+    VoxelCoord extent_;
+    std::span<const VoxelCoord> coords_;
+    std::vector<std::int16_t> x_;
+    std::vector<std::uint32_t> row_first_;
+};
+
+/// A set of the 26 cells around a cell, one bit for each by the code of `CellRows::sweep<1>`.
+using CellSet = std::uint32_t;
+
+/// Answers whether the cell sets of two cells up to two apart have a cell in common.
+class CellSetOverlap {
+  public:
+    CellSetOverlap();
+
+    /// \param code  of the second cell seen from the first, by `CellRows::sweep<2>`
+    /// \return the cells of `first` that are also in `second`, as a set around the first cell
+    [[nodiscard]] CellSet common(CellSet first, CellSet second, int code) const {
+        const Shift& s = shifts_[static_cast<std::size_t>(code)];
+        return first & (((second & s.stays) << s.left) >> s.right);
+    }
+
+  private:
+    struct Shift {
+        CellSet stays = 0;  ///< cells around the second that are also around the first
+        std::uint8_t left = 0;
+        std::uint8_t right = 0;
+    };
+    std::array<Shift, 125> shifts_;
+};
+
+/// Code of a touching cell by `CellRows::sweep<1>`.
+[[nodiscard]] inline int touching_code(const VoxelCoord& from, const VoxelCoord& to) {
+    return (to[0] - from[0] + 1) + 3 * (to[1] - from[1] + 1) + 9 * (to[2] - from[2] + 1);
+}
+
+/// The same cell by the code of `CellRows::sweep<2>`.
+[[nodiscard]] inline int widened_code(int touching) {
+    return (touching % 3 + 1) + 5 * (touching / 3 % 3 + 1) + 25 * (touching / 9 + 1);
+}
+
+}  // namespace fretwork
