@@ -17,6 +17,7 @@
 #include "formats/read_file.h"
 #include "formats/stl_reader.h"
 #include "formats/stl_writer.h"
+#include "formats/threemf_reader.h"
 
 namespace fretwork {
 namespace {
@@ -67,7 +68,8 @@ MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view s
             file = read_off(bytes, source, run);
             break;
         case MeshFormat::kThreemf:
-            throw InvalidInput(std::string(source) + ": 3MF cannot be read");
+            file = read_threemf(bytes, source, run);
+            break;
     }
     if (file.mesh.triangles.empty())
         fail_parse(source, place_of_byte(bytes.size()), "no triangle in the whole file", "at least one");

@@ -1,0 +1,472 @@
+#include "formats/threemf_model_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "formats/color_channel.h"
+#include "formats/mesh_data.h"
+#include "formats/parse_error.h"
+#include "formats/text_scanner.h"
+#include "formats/threemf_names.h"
+#include "formats/xml_reader.h"
+
+namespace fretwork::threemf {
+namespace {
+
+constexpr std::size_t kMaxItems = 1 << 16;  ///< of objects, components, build items, metadata, colour tables
+constexpr std::size_t kMaxTextBytes = 1 << 20;
+constexpr std::size_t kMaxColors = 1 << 24;
+constexpr std::size_t kStopEvery = 1 << 14;
+constexpr std::int64_t kMaxId = 0x7FFFFFFF;
+
+/// Where in the document we are; kSkip stands for anything that is not read, with all it holds.
+enum class Within {
+    kNothing,
+    kSkip,
+    kModel,
+    kMetadata,
+    kResources,
+    kBaseMaterials,
+    kColorGroup,
+    kObject,
+    kMesh,
+    kVertices,
+    kTriangles,
+    kComponents,
+    kBuild,
+    kImage3d,
+    kImageStack,
+    kVolumeData,
+    kLeaf,  ///< read, and holds nothing that matters
+};
+
+/// #RRGGBB or #RRGGBBAA
+std::optional<Rgb8> parse_color(std::string_view text) {
+    if ((text.size() != 7 && text.size() != 9) || text.front() != '#') return std::nullopt;
+    std::array<unsigned, 8> digits{};
+    for (std::size_t i = 1; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c >= '0' && c <= '9') {
+            digits[i - 1] = static_cast<unsigned>(c - '0');
+        } else if (c >= 'a' && c <= 'f') {
+            digits[i - 1] = static_cast<unsigned>(c - 'a') + 10;
+        } else if (c >= 'A' && c <= 'F') {
+            digits[i - 1] = static_cast<unsigned>(c - 'A') + 10;
+        } else {
+            return std::nullopt;
+        }
+    }
+    Rgb8 color{};
+    for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<std::uint8_t>(16 * digits[2 * k] + digits[2 * k + 1]);
+    return color;
+}
+
+}  // namespace
+
+class ModelReader::Handler : public XmlHandler {
+  public:
+    Handler(std::string_view source, const RunControl& run) : xml_(*this, source), run_(run) {}
+
+    XmlReader& xml() { return xml_; }
+
+    Model take() {
+        if (!model_seen_) xml_.fail("no model", "a <model> of the core namespace");
+        if (degenerate_triangles_ > 0)
+            model_.warnings.push_back(std::to_string(degenerate_triangles_) +
+                                      " triangles that name one vertex twice were dropped");
+        if (skipped_properties_ > 0)
+            model_.warnings.push_back(std::to_string(skipped_properties_) +
+                                      " triangles with properties that are not colours");
+        return std::move(model_);
+    }
+
+    void start(const XmlElement& element) override {
+        const Within parent = within_.empty() ? Within::kNothing : within_.back();
+        within_.push_back(enter(parent, element));
+    }
+
+    void end() override {
+        switch (within_.back()) {
+            case Within::kMetadata:
+                model_.metadata.emplace_back(std::move(metadata_name_), std::move(text_));
+                text_.clear();
+                break;
+            case Within::kMesh:
+                check_triangles();
+                break;
+            default:
+                break;
+        }
+        within_.pop_back();
+    }
+
+    void text(std::string_view characters) override {
+        if (within_.empty() || within_.back() != Within::kMetadata) return;
+        if (text_.size() + characters.size() > kMaxTextBytes) xml_.fail("metadata over 1 MiB", "a shorter text");
+        text_.append(characters);
+    }
+
+  private:
+    Within enter(Within parent, const XmlElement& e) {
+        if (parent == Within::kNothing) return enter_model(e);
+        if (e.space == kCore) return enter_core(parent, e);
+        if (e.space == kMaterial) return enter_material(parent, e);
+        if (e.space == kVolumetric) return enter_volumetric(parent, e);
+        return Within::kSkip;
+    }
+
+    Within enter_core(Within parent, const XmlElement& e) {
+        switch (parent) {
+            case Within::kModel:
+                if (e.name == "resources") return Within::kResources;
+                if (e.name == "build") return Within::kBuild;
+                if (e.name == "metadata") return start_metadata(e);
+                break;
+            case Within::kResources:
+                if (e.name == "object") return start_object(e);
+                if (e.name == "basematerials") return start_table(e, Within::kBaseMaterials);
+                break;
+            case Within::kBaseMaterials:
+                if (e.name == "base") return add_color(e, "displaycolor");
+                break;
+            case Within::kObject:
+                if (e.name == "mesh") return start_mesh(e);
+                if (e.name == "components") return Within::kComponents;
+                break;
+            case Within::kMesh:
+                if (e.name == "vertices") return Within::kVertices;
+                if (e.name == "triangles") return Within::kTriangles;
+                break;
+            case Within::kVertices:
+                if (e.name == "vertex") return add_vertex(e);
+                break;
+            case Within::kTriangles:
+                if (e.name == "triangle") return add_triangle(e);
+                break;
+            case Within::kComponents:
+                if (e.name == "component") return add_instance(e, object_->components, "components");
+                break;
+            case Within::kBuild:
+                if (e.name == "item") return add_instance(e, model_.items, "build items");
+                break;
+            default:
+                break;
+        }
+        return Within::kSkip;
+    }
+
+    Within enter_material(Within parent, const XmlElement& e) {
+        if (parent == Within::kResources && e.name == "colorgroup") return start_table(e, Within::kColorGroup);
+        if (parent == Within::kColorGroup && e.name == "color") return add_color(e, "color");
+        return Within::kSkip;
+    }
+
+    Within enter_volumetric(Within parent, const XmlElement& e) {
+        if (parent == Within::kResources && e.name == "image3d") return start_image(e);
+        if (parent == Within::kImage3d && e.name == "imagestack") return start_stack(e);
+        if (parent == Within::kImageStack && e.name == "imagesheet") return add_sheet(e);
+        if (parent == Within::kResources && e.name == "functionfromimage3d") return add_function(e);
+        if (parent == Within::kResources && e.name == "volumedata") {
+            volume_ = &model_.volumes[new_id(e)];
+            return Within::kVolumeData;
+        }
+        if (parent == Within::kVolumeData && (e.name == "color" || e.name == "property")) return add_property(e);
+        return Within::kSkip;
+    }
+
+    Within enter_model(const XmlElement& e) {
+        if (e.name != "model" || e.space != kCore)
+            xml_.fail("element " + in_quotes(e.name), "a <model> of the core namespace");
+        model_seen_ = true;
+        if (const auto unit = e.find("unit")) {
+            const auto known = length_unit_from_name(*unit);
+            if (!known) xml_.fail("unit " + in_quotes(*unit), "micron, millimeter, centimeter, inch, foot or meter");
+            model_.unit = *known;
+        }
+        check_required(e.find("requiredextensions").value_or(""));
+        return Within::kModel;
+    }
+
+    void check_required(std::string_view prefixes) const {
+        static constexpr std::array<std::string_view, 6> kKnown = {kCore,       kMaterial,     kVolumetric,
+                                                                   kProduction, kTriangleSets, kFretwork};
+        TextScanner words(prefixes, "", {.comment = 0});
+        for (std::string_view prefix = words.word(); !prefix.empty(); prefix = words.word()) {
+            const std::string space = xml_.namespace_of(prefix);
+            if (std::ranges::find(kKnown, space) == kKnown.end())
+                xml_.fail("the required extension " + in_quotes(prefix) + " (" + in_quotes(space) + ")",
+                          "core, materials, production, triangle sets or volumetric");
+        }
+    }
+
+    std::string_view need(const XmlElement& e, std::string_view attribute) const {
+        const auto value = e.find(attribute);
+        if (!value) xml_.fail("element " + in_quotes(e.name) + " without " + std::string(attribute), "that attribute");
+        return *value;
+    }
+
+    std::int64_t whole(std::string_view text, std::string_view what, std::int64_t least, std::int64_t most) const {
+        std::int64_t value = 0;
+        if (!parse_integer(text, value) || value < least || value > most)
+            xml_.fail(std::string(what) + " " + in_quotes(text),
+                      "an integer from " + std::to_string(least) + " to " + std::to_string(most));
+        return value;
+    }
+
+    double number(std::string_view text, std::string_view what) const {
+        double value = 0.0;
+        if (!parse_number(text, value) || std::abs(value) > kMaxCoordinate)
+            xml_.fail(std::string(what) + " " + in_quotes(text), "a finite number of at most 1e9 in size");
+        return value;
+    }
+
+    ResourceId id_in(const XmlElement& e, std::string_view attribute) const {
+        return static_cast<ResourceId>(whole(need(e, attribute), attribute, 1, kMaxId));
+    }
+
+    ResourceId new_id(const XmlElement& e) {
+        const ResourceId id = id_in(e, "id");
+        if (!ids_.insert(id).second)
+            xml_.fail("a second resource with id " + std::to_string(id), "ids without repeats");
+        if (ids_.size() > kMaxItems) xml_.fail("over 65536 resources", "fewer");
+        return id;
+    }
+
+    Within start_metadata(const XmlElement& e) {
+        metadata_name_ = e.find("name").value_or("");
+        if (model_.metadata.size() >= kMaxItems) xml_.fail("over 65536 metadata", "fewer");
+        return Within::kMetadata;
+    }
+
+    Within start_table(const XmlElement& e, Within kind) {
+        table_ = &model_.color_tables[new_id(e)];
+        return kind;
+    }
+
+    Within add_color(const XmlElement& e, std::string_view attribute) {
+        const std::string_view text = need(e, attribute);
+        const auto color = parse_color(text);
+        if (!color) xml_.fail("colour " + in_quotes(text), "#RRGGBB or #RRGGBBAA");
+        if (table_->colors.size() >= kMaxColors) xml_.fail("over 16777216 colours", "fewer");
+        table_->colors.push_back(*color);
+        return Within::kLeaf;
+    }
+
+    Within start_object(const XmlElement& e) {
+        const ResourceId id = new_id(e);
+        object_ = &model_.objects[id];
+        object_->line = xml_.line();
+        object_->name = e.find("name").value_or("");
+        object_->type = e.find("type").value_or("model");
+        const auto pid = e.find("pid");
+        default_color_ = std::nullopt;
+        if (pid) {
+            const std::int64_t group = whole(*pid, "pid", 1, kMaxId);
+            const std::int64_t index = whole(e.find("pindex").value_or("0"), "pindex", 0, kMaxId);
+            default_color_ = color_at(group, index);
+        }
+        return Within::kObject;
+    }
+
+    Within start_mesh(const XmlElement& e) {
+        if (!object_->mesh.positions_mm.empty()) xml_.fail("a second mesh in one object", "one");
+        if (const auto volume = e.find("volumeid", kVolumetric))
+            object_->volume = static_cast<ResourceId>(whole(*volume, "volumeid", 1, kMaxId));
+        colored_ = false;
+        return Within::kMesh;
+    }
+
+    Within add_vertex(const XmlElement& e) {
+        auto& positions = object_->mesh.positions_mm;
+        if (positions.size() % kStopEvery == 0) run_.throw_if_stopped();
+        positions.emplace_back(number(need(e, "x"), "x"), number(need(e, "y"), "y"), number(need(e, "z"), "z"));
+        return Within::kLeaf;
+    }
+
+    Within add_triangle(const XmlElement& e) {
+        TriangleMesh& mesh = object_->mesh;
+        if (mesh.triangles.size() % kStopEvery == 0) run_.throw_if_stopped();
+        Triangle triangle{};
+        static constexpr std::array<std::string_view, 3> kCorners = {"v1", "v2", "v3"};
+        for (std::size_t k = 0; k < 3; ++k)
+            triangle[k] = static_cast<std::uint32_t>(whole(need(e, kCorners[k]), kCorners[k], 0, 0xFFFFFFFE));
+        // Forbidden by the format, yet common; such a triangle has no area and nothing to carve.
+        if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
+            ++degenerate_triangles_;
+            return Within::kLeaf;
+        }
+        mesh.triangles.push_back(triangle);
+        add_triangle_color(triangle_color(e));
+        return Within::kLeaf;
+    }
+
+    void add_triangle_color(const std::optional<Rgb8>& color) {
+        auto& colors = object_->triangle_colors;
+        if (color && !colored_) {
+            colored_ = true;
+            colors.assign(object_->mesh.triangles.size() - 1, kUncolored);
+        }
+        if (colored_) colors.push_back(color.value_or(kUncolored));
+    }
+
+    /// The mean of the corners' colours; the object's own colour where the triangle has none.
+    std::optional<Rgb8> triangle_color(const XmlElement& e) {
+        const auto pid = e.find("pid"), p1 = e.find("p1");
+        if (!pid || !p1) return default_color_;
+        const std::int64_t group = whole(*pid, "pid", 1, kMaxId);
+        const auto first = color_at(group, whole(*p1, "p1", 0, kMaxId));
+        if (!first) {
+            ++skipped_properties_;
+            return default_color_;
+        }
+        const auto p2 = e.find("p2"), p3 = e.find("p3");
+        if (!p2 || !p3 || (*p2 == *p1 && *p3 == *p1)) return first;
+        const auto second = color_at(group, whole(*p2, "p2", 0, kMaxId));
+        const auto third = color_at(group, whole(*p3, "p3", 0, kMaxId));
+        Rgb8 mean{};
+        for (std::size_t k = 0; k < 3; ++k)
+            mean[k] = static_cast<std::uint8_t>(((*first)[k] + (*second)[k] + (*third)[k] + 1) / 3);
+        return mean;
+    }
+
+    /// Nothing when the group holds no colours (textures, composites).
+    std::optional<Rgb8> color_at(std::int64_t group, std::int64_t index) const {
+        const auto table = model_.color_tables.find(static_cast<ResourceId>(group));
+        if (table == model_.color_tables.end()) return std::nullopt;
+        const std::vector<Rgb8>& colors = table->second.colors;
+        if (index >= static_cast<std::int64_t>(colors.size()))
+            xml_.fail("colour index " + std::to_string(index), "one below " + std::to_string(colors.size()));
+        return colors[static_cast<std::size_t>(index)];
+    }
+
+    /// Triangles may come before the vertices in the text, so indices are judged at the end.
+    void check_triangles() const {
+        const TriangleMesh& mesh = object_->mesh;
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+            for (const std::uint32_t v : mesh.triangles[t])
+                if (v >= mesh.positions_mm.size())
+                    xml_.fail("vertex index " + std::to_string(v) + " in triangle " + std::to_string(t),
+                              "one below " + std::to_string(mesh.positions_mm.size()));
+    }
+
+    Within add_instance(const XmlElement& e, std::vector<Instance>& to, std::string_view what) {
+        if (to.size() >= kMaxItems) xml_.fail("over 65536 " + std::string(what), "fewer");
+        Instance instance;
+        instance.object = id_in(e, "objectid");
+        instance.part = e.find("path", kProduction).value_or("");
+        instance.line = xml_.line();
+        if (const auto transform = e.find("transform")) instance.transform = parse_transform(*transform);
+        to.push_back(std::move(instance));
+        return Within::kLeaf;
+    }
+
+    /// Twelve numbers, row vectors times matrix: the transpose of what Eigen stores.
+    Eigen::Affine3d parse_transform(std::string_view text) const {
+        Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+        TextScanner words(text, "", {.comment = 0});
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 3; ++column)
+                transform.matrix()(column, row) = number(words.word(), "transform");
+        if (!words.word().empty()) xml_.fail("transform " + in_quotes(text), "twelve numbers");
+        const double size = transform.linear().norm();
+        if (!(std::abs(transform.linear().determinant()) > 1e-12 * size * size * size))
+            xml_.fail("the singular transform " + in_quotes(text), "one that keeps three dimensions");
+        return transform;
+    }
+
+    Within start_image(const XmlElement& e) {
+        image_ = &model_.images[new_id(e)];
+        image_->name = e.find("name").value_or("");
+        return Within::kImage3d;
+    }
+
+    Within start_stack(const XmlElement& e) {
+        constexpr std::int64_t kMost = 1024;
+        image_->rows = whole(need(e, "rowcount"), "rowcount", 1, kMost);
+        image_->columns = whole(need(e, "columncount"), "columncount", 1, kMost);
+        sheets_wanted_ = static_cast<std::size_t>(whole(need(e, "sheetcount"), "sheetcount", 1, kMost));
+        return Within::kImageStack;
+    }
+
+    Within add_sheet(const XmlElement& e) {
+        if (image_->sheets.size() >= sheets_wanted_)
+            xml_.fail("more sheets than the " + std::to_string(sheets_wanted_) + " announced", "that number");
+        image_->sheets.emplace_back(need(e, "path"));
+        return Within::kLeaf;
+    }
+
+    TileStyle tile_style(const XmlElement& e, std::string_view attribute) const {
+        const std::string_view text = e.find(attribute).value_or("wrap");
+        if (text == "wrap") return TileStyle::kWrap;
+        if (text == "mirror") return TileStyle::kMirror;
+        if (text != "clamp") xml_.fail("tile style " + in_quotes(text), "wrap, mirror or clamp");
+        return TileStyle::kClamp;
+    }
+
+    Within add_function(const XmlElement& e) {
+        ImageFunction& function = model_.functions[new_id(e)];
+        function.image = id_in(e, "image3did");
+        function.offset = number(e.find("valueoffset").value_or("0"), "valueoffset");
+        function.scale = number(e.find("valuescale").value_or("1"), "valuescale");
+        const std::string_view filter = e.find("filter").value_or("linear");
+        if (filter != "linear" && filter != "nearest") xml_.fail("filter " + in_quotes(filter), "linear or nearest");
+        function.nearest = filter == "nearest";
+        function.tile[0] = tile_style(e, "tilestyleu");
+        function.tile[1] = tile_style(e, "tilestylev");
+        function.tile[2] = tile_style(e, "tilestylew");
+        return Within::kLeaf;
+    }
+
+    Within add_property(const XmlElement& e) {
+        if (volume_->size() >= 256) xml_.fail("over 256 properties", "fewer");
+        VolumeProperty property;
+        if (e.name == "property") property.name = need(e, "name");
+        property.function = id_in(e, "functionid");
+        property.channel = need(e, "channel");
+        if (const auto transform = e.find("transform")) property.transform = parse_transform(*transform);
+        volume_->push_back(std::move(property));
+        return Within::kLeaf;
+    }
+
+    XmlReader xml_;
+    const RunControl& run_;
+    Model model_;
+    std::vector<Within> within_;
+    std::set<ResourceId> ids_;
+    std::string metadata_name_, text_;
+    // What is being filled; map nodes do not move.
+    ColorTable* table_ = nullptr;
+    Object* object_ = nullptr;
+    Image3d* image_ = nullptr;
+    std::vector<VolumeProperty>* volume_ = nullptr;
+    std::optional<Rgb8> default_color_;
+    bool colored_ = false;
+    bool model_seen_ = false;
+    std::size_t sheets_wanted_ = 0;
+    std::size_t skipped_properties_ = 0;
+    std::size_t degenerate_triangles_ = 0;
+};
+
+ModelReader::ModelReader(std::string_view source, const RunControl& run)
+    : handler_(std::make_unique<Handler>(source, run)) {}
+ModelReader::~ModelReader() = default;
+
+void ModelReader::feed(std::string_view block) {
+    handler_->xml().feed(block);
+}
+
+Model ModelReader::finish() {
+    handler_->xml().finish();
+    return handler_->take();
+}
+
+Model read_model(std::string_view xml, std::string_view source, const RunControl& run) {
+    ModelReader reader(source, run);
+    reader.feed(xml);
+    return reader.finish();
+}
+
+}  // namespace fretwork::threemf
