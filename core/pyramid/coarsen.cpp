@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/base/parallel.h"
+#include "core/shell/cell_rows.h"
 #include "core/shell/links.h"
 
 namespace fretwork {
@@ -65,7 +66,7 @@ class LayerGrouper {
             const VoxelCoord cell = cell_above(fine_.coords[v]);
             for (const VoxelIndex w : fine_.adjacency.of(v)) {
                 if (w >= v) break;  // the link is met from its other end
-                if (w < begin_ || cell_above(fine_.coords[w]) != cell) continue;
+                if (w < begin_ || !same_cell(cell_above(fine_.coords[w]), cell)) continue;
                 const std::uint32_t a = root(v - begin_);
                 const std::uint32_t b = root(w - begin_);
                 group_[std::max(a, b)] = std::min(a, b);

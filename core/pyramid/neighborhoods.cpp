@@ -38,35 +38,59 @@ class Ways {
 
     [[nodiscard]] Way least_bent(VoxelIndex v, VoxelIndex w) const {
         const Adjacency& links = level_.adjacency;
-        Way best = {v, cosine_between(v, w)};
-        for (std::uint32_t e = links.first[v]; e < links.first[v + 1]; ++e) {
-            const float cosine = std::min(cosine_[e], cosine_between(links.neighbor[e], w));
-            if (cosine > best.cosine) best = {links.neighbor[e], cosine};
+        Way best = {v, -1.0F};
+        std::uint32_t e = links.first[v];
+        std::uint32_t f = links.first[w];
+        while (e < links.first[v + 1] && f < links.first[w + 1]) {
+            const VoxelIndex from_v = links.neighbor[e];
+            const VoxelIndex from_w = links.neighbor[f];
+            if (from_v == w && cosine_[e] > best.cosine) best = {v, cosine_[e]};
+            if (from_v == from_w) {
+                const float cosine = std::min(cosine_[e], cosine_[f]);
+                if (cosine > best.cosine) best = {from_v, cosine};
+            }
+            e += from_v <= from_w;
+            f += from_w <= from_v;
         }
+        // The direct link may be the last of the row of v.
+        for (; e < links.first[v + 1]; ++e)
+            if (links.neighbor[e] == w && cosine_[e] > best.cosine) best = {v, cosine_[e]};
         return best;
     }
 
     [[nodiscard]] float cosine_of_link(std::size_t e) const { return cosine_[e]; }
 
   private:
-    [[nodiscard]] float cosine_between(VoxelIndex v, VoxelIndex w) const {
-        const auto row = level_.adjacency.of(v);
-        const auto at = std::lower_bound(row.begin(), row.end(), w);
-        if (at == row.end() || *at != w) return -1.0F;
-        return cosine_[level_.adjacency.first[v] + static_cast<std::size_t>(at - row.begin())];
-    }
-
     const PyramidLevel& level_;
     std::vector<float> cosine_;
 };
 
-// The cells of v and of all entries linked to it, as sets around the cell of v: those listed once, where the cell
-// tells the entry, and those listed more often.
+// Where each layer of cells starts; entries are sorted by z first.
+std::vector<VoxelIndex> layer_starts(std::span<const VoxelCoord> coords) {
+    std::vector<VoxelIndex> first(static_cast<std::size_t>(coords.back()[2]) + 2, 0);
+    for (const VoxelCoord& c : coords) ++first[static_cast<std::size_t>(c[2]) + 1];
+    for (std::size_t z = 0; z + 1 < first.size(); ++z) first[z + 1] += first[z];
+    return first;
+}
+
+struct Window {
+    VoxelIndex begin;
+    VoxelIndex end;
+};
+
+// All entries that may be neighbours of those in [begin, end).
+Window window_around(const PyramidLevel& level, std::span<const VoxelIndex> layers, std::size_t begin,
+                     std::size_t end) {
+    const auto low = static_cast<std::size_t>(std::max(0, level.coords[begin][2] - 2));
+    const auto high = std::min(layers.size() - 1, static_cast<std::size_t>(level.coords[end - 1][2]) + 3);
+    return {layers[low], layers[high]};
+}
+
+// The cells of v and of all entries linked to it, as sets around the cell of v.
 struct Surroundings {
-    CellSet single = 0;
-    CellSet several = 0;
-    CellSet smooth_single = 0;  // the same over steps with at least kSmoothCosine
-    CellSet smooth_several = 0;
+    CellSet cells = 0;
+    CellSet smooth = 0;    // over steps with at least kSmoothCosine
+    bool crowded = false;  // some of the cells are listed more than once, so that a cell does not tell the entry
 };
 
 std::vector<Surroundings> survey(const PyramidLevel& level, const CellRows& rows, const Ways& ways) {
@@ -74,52 +98,114 @@ std::vector<Surroundings> survey(const PyramidLevel& level, const CellRows& rows
     std::vector<Surroundings> all(level.size());
     parallel_for(level.size(), kGrain, [&](std::size_t v) {
         Surroundings& s = all[v];
-        (rows.shares_cell(static_cast<VoxelIndex>(v)) ? s.several : s.single) |= own;
-        (rows.shares_cell(static_cast<VoxelIndex>(v)) ? s.smooth_several : s.smooth_single) |= own;
+        s.cells = s.smooth = own;
+        s.crowded = rows.shares_cell(static_cast<VoxelIndex>(v));
         for (std::uint32_t e = level.adjacency.first[v]; e < level.adjacency.first[v + 1]; ++e) {
-            const VoxelIndex w = level.adjacency.neighbor[e];
             if (ways.cosine_of_link(e) < kTurningRoundCosine) continue;
+            const VoxelIndex w = level.adjacency.neighbor[e];
             const CellSet cell = CellSet{1} << touching_code(level.coords[v], level.coords[w]);
-            (rows.shares_cell(w) ? s.several : s.single) |= cell;
-            if (ways.cosine_of_link(e) >= kSmoothCosine)
-                (rows.shares_cell(w) ? s.smooth_several : s.smooth_single) |= cell;
+            s.cells |= cell;
+            if (ways.cosine_of_link(e) >= kSmoothCosine) s.smooth |= cell;
+            s.crowded |= rows.shares_cell(w);
         }
     });
     return all;
 }
 
+// Lists N(v) by following links. For crowded entries.
+class LinkFollower {
+  public:
+    LinkFollower(const PyramidLevel& level, const Ways& ways, Window window)
+        : level_(level), ways_(ways), window_(window), slot_(window.end - window.begin, 0) {}
+
+    /// Appends the neighbours of `v`, ascending and marked; returns their number.
+    std::uint32_t append(VoxelIndex v, std::vector<std::uint32_t>& neighbors) {
+        const Adjacency& links = level_.adjacency;
+        found_.clear();
+        best_.clear();
+        for (std::uint32_t e = links.first[v]; e < links.first[v + 1]; ++e) {
+            const float first_step = ways_.cosine_of_link(e);
+            if (first_step < kTurningRoundCosine) continue;
+            const VoxelIndex u = links.neighbor[e];
+            note(u, first_step);
+            for (std::uint32_t f = links.first[u]; f < links.first[u + 1]; ++f)
+                if (links.neighbor[f] != v && ways_.cosine_of_link(f) >= kTurningRoundCosine)
+                    note(links.neighbor[f], std::min(first_step, ways_.cosine_of_link(f)));
+        }
+        std::sort(found_.begin(), found_.end());
+        for (const VoxelIndex w : found_) {
+            std::uint32_t& slot = slot_[w - window_.begin];
+            neighbors.push_back(best_[slot - 1] >= kSmoothCosine ? w : w | kCreased);
+            slot = 0;
+        }
+        return static_cast<std::uint32_t>(found_.size());
+    }
+
+  private:
+    void note(VoxelIndex w, float cosine) {
+        std::uint32_t& slot = slot_[w - window_.begin];
+        if (slot == 0) {
+            found_.push_back(w);
+            best_.push_back(cosine);
+            slot = static_cast<std::uint32_t>(best_.size());
+        } else {
+            best_[slot - 1] = std::max(best_[slot - 1], cosine);
+        }
+    }
+
+    const PyramidLevel& level_;
+    const Ways& ways_;
+    Window window_;
+    std::vector<std::uint32_t> slot_;  // place in best_ plus one, per entry of the window
+    std::vector<VoxelIndex> found_;
+    std::vector<float> best_;  // cosine of the least bent way
+};
+
 // Lists N(v) for runs of entries.
 class NeighborFinder {
   public:
-    NeighborFinder(const PyramidLevel& level, const CellRows& rows, const Ways& ways)
-        : rows_(rows), ways_(ways), surroundings_(survey(level, rows, ways)) {}
+    NeighborFinder(const PyramidLevel& level, const Ways& ways)
+        : level_(level),
+          ways_(ways),
+          rows_(extent_of(level.coords), level.coords),
+          layers_(layer_starts(level.coords)),
+          surroundings_(survey(level, rows_, ways)) {}
 
     /// Appends the neighbours of v in [begin, end), ascending, with the mark kCreased where no smooth way leads
-    /// there, and writes the number of those of v to `count[v]`.
+    /// there, and adds the number of those of v to `count[v]`.
     void append(std::size_t begin, std::size_t end, std::vector<std::uint32_t>& neighbors, std::uint32_t* count) const {
+        std::optional<LinkFollower> follower;
+        while (begin < end) {
+            std::size_t run = begin + 1;
+            while (run < end && surroundings_[run].crowded == surroundings_[begin].crowded) ++run;
+            if (surroundings_[begin].crowded) {
+                if (!follower) follower.emplace(level_, ways_, window_around(level_, layers_, begin, end));
+                for (std::size_t v = begin; v < run; ++v)
+                    count[v] = follower->append(static_cast<VoxelIndex>(v), neighbors);
+            } else {
+                append_by_cells(begin, run, neighbors, count);
+            }
+            begin = run;
+        }
+    }
+
+  private:
+    void append_by_cells(std::size_t begin, std::size_t end, std::vector<std::uint32_t>& neighbors,
+                         std::uint32_t* count) const {
         rows_.sweep<2>(begin, end, [&](VoxelIndex v, VoxelIndex w, int code) {
             const Surroundings& a = surroundings_[v];
             const Surroundings& b = surroundings_[w];
-            // Two entries with a linked cell (or their own) in common are at most two steps apart.
-            bool smooth = overlap_.common(a.smooth_single, b.smooth_single, code) != 0;
-            if (!smooth) {
-                const bool reached = overlap_.common(a.single, b.single, code) != 0;
-                if (!reached && overlap_.common(a.several, b.several, code) == 0) return;
-                // The cells in common may hold one entry for each of the two: only the lists tell.
-                if (!reached || overlap_.common(a.smooth_several, b.smooth_several, code) != 0) {
-                    const float cosine = ways_.least_bent(v, w).cosine;
-                    if (cosine < kTurningRoundCosine) return;
-                    smooth = cosine >= kSmoothCosine;
-                }
-            }
-            neighbors.push_back(smooth ? w : w | kCreased);
+            // Two entries with a linked cell, or their own, in common are at most two steps apart.
+            if (overlap_.common(a.cells, b.cells, code) == 0) return;
+            neighbors.push_back(overlap_.common(a.smooth, b.smooth, code) != 0 ? w : w | kCreased);
             ++count[v];
         });
     }
 
-  private:
-    const CellRows& rows_;
+    const PyramidLevel& level_;
     const Ways& ways_;
+    CellRows rows_;
+    std::vector<VoxelIndex> layers_;
     std::vector<Surroundings> surroundings_;
     CellSetOverlap overlap_;
 };
@@ -142,10 +228,16 @@ class Unfolder {
   public:
     Unfolder(const PyramidLevel& level, const Ways& ways) : level_(level), ways_(ways) {}
 
-    /// The way from v to w laid into the plane of v.
+    /// The way from v to w laid into the plane of v. A rounded edge is followed in two steps; a sharp one, over
+    /// which no smooth way leads, is a hinge.
     [[nodiscard]] Vec3f unfold(VoxelIndex v, VoxelIndex w, bool smooth_way) const {
         const float cosine = level_.normals[v].dot(level_.normals[w]);
-        return smooth_way && cosine >= kSmoothCosine ? over_smooth(v, w, cosine) : over_crease(v, w);
+        if (smooth_way && cosine >= kSmoothCosine) return over_smooth(v, w, cosine);
+        if (!smooth_way)
+            if (const std::optional<Vec3f> hinged = around_hinge(v, w)) return *hinged;
+        const VoxelIndex between = ways_.least_bent(v, w).between;
+        if (between == v) return one_step(v, w);
+        return one_step(v, between) + carry(one_step(between, w), level_.normals[between], level_.normals[v]);
     }
 
   private:
@@ -154,16 +246,6 @@ class Unfolder {
         // up to a^4.
         return (1.0F + (1.0F - cosine) / 12.0F) *
                lay_flat(level_.positions[w] - level_.positions[v], level_.normals[v]);
-    }
-
-    [[nodiscard]] Vec3f over_crease(VoxelIndex v, VoxelIndex w) const {
-        // A rounded edge is followed in two steps; a sharp one is a hinge.
-        const Ways::Way way = ways_.least_bent(v, w);
-        if (way.cosine < kSmoothCosine)
-            if (const std::optional<Vec3f> hinged = around_hinge(v, w)) return *hinged;
-        if (way.between == v) return one_step(v, w);
-        return one_step(v, way.between) +
-               carry(one_step(way.between, w), level_.normals[way.between], level_.normals[v]);
     }
 
     [[nodiscard]] Vec3f one_step(VoxelIndex v, VoxelIndex w) const {
@@ -192,25 +274,14 @@ class Unfolder {
     const Ways& ways_;
 };
 
-// Where each layer of cells starts; entries are sorted by z first.
-std::vector<VoxelIndex> layer_starts(std::span<const VoxelCoord> coords) {
-    std::vector<VoxelIndex> first(static_cast<std::size_t>(coords.back()[2]) + 2, 0);
-    for (const VoxelCoord& c : coords) ++first[static_cast<std::size_t>(c[2]) + 1];
-    for (std::size_t z = 0; z + 1 < first.size(); ++z) first[z + 1] += first[z];
-    return first;
-}
-
 // Entries are visited in ascending order, so the places they take in the row of a neighbour follow each other.
-void fill_reverse(const PyramidLevel& level, const std::vector<VoxelIndex>& layers, Neighborhoods& n, std::size_t begin,
-                  std::size_t end) {
+void fill_reverse(Window window, Neighborhoods& n, std::size_t begin, std::size_t end) {
     constexpr std::uint32_t kUnset = 0xffffffffu;
-    const auto low = static_cast<std::size_t>(std::max(0, level.coords[begin][2] - 2));
-    const auto high = std::min(layers.size() - 1, static_cast<std::size_t>(level.coords[end - 1][2]) + 3);
-    std::vector<std::uint32_t> next(layers[high] - layers[low], kUnset);
+    std::vector<std::uint32_t> next(window.end - window.begin, kUnset);
     for (std::size_t v = begin; v < end; ++v)
         for (std::uint32_t i = n.first[v]; i < n.first[v + 1]; ++i) {
             const VoxelIndex w = n.neighbor[i];
-            std::uint32_t& at = next[w - layers[low]];
+            std::uint32_t& at = next[w - window.begin];
             if (at == kUnset) {
                 const auto row = n.neighbor.begin();
                 at = static_cast<std::uint32_t>(
@@ -229,8 +300,7 @@ Neighborhoods find_neighborhoods(const PyramidLevel& level, const RunControl& ru
     const Ways ways(level);
     std::vector<std::vector<std::uint32_t>> chunks((level.size() + kGrain - 1) / kGrain);
     {
-        const CellRows rows(extent_of(level.coords), level.coords);
-        const NeighborFinder finder(level, rows, ways);
+        const NeighborFinder finder(level, ways);
         parallel_chunks(level.size(), kGrain, [&](std::size_t begin, std::size_t end) {
             run.throw_if_stopped();
             std::vector<std::uint32_t>& all = chunks[begin / kGrain];
@@ -260,7 +330,7 @@ Neighborhoods find_neighborhoods(const PyramidLevel& level, const RunControl& ru
     const std::vector<VoxelIndex> layers = layer_starts(level.coords);
     parallel_chunks(level.size(), kReverseGrain, [&](std::size_t begin, std::size_t end) {
         run.throw_if_stopped();
-        fill_reverse(level, layers, result, begin, end);
+        fill_reverse(window_around(level, layers, begin, end), result, begin, end);
     });
     return result;
 }

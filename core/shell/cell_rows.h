@@ -14,6 +14,11 @@ namespace fretwork {
 /// The smallest grid that starts at the cell (0, 0, 0) and holds all of `coords`.
 [[nodiscard]] VoxelCoord extent_of(std::span<const VoxelCoord> coords);
 
+/// The same as `a == b`, which is compiled to a call.
+[[nodiscard]] inline bool same_cell(const VoxelCoord& a, const VoxelCoord& b) {
+    return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0;
+}
+
 /// Rows of cells along x of a list sorted by (z, y, x), and where each of them starts.
 class CellRows {
   public:
@@ -44,7 +49,8 @@ class CellRows {
 
     /// Is the cell of `v` listed more than once?
     [[nodiscard]] bool shares_cell(VoxelIndex v) const {
-        return (v > 0 && coords_[v - 1] == coords_[v]) || (v + 1 < coords_.size() && coords_[v + 1] == coords_[v]);
+        return (v > 0 && same_cell(coords_[v - 1], coords_[v])) ||
+               (v + 1 < coords_.size() && same_cell(coords_[v + 1], coords_[v]));
     }
 
   private:
