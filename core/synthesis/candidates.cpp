@@ -26,37 +26,6 @@ std::uint64_t scramble(std::uint64_t bits) {
 
 }  // namespace
 
-CoherentLabels::CoherentLabels() : slot_(kSlots, 0) {
-    labels_.reserve(kMaxNeighbors);
-    used_.reserve(kMaxNeighbors);
-}
-
-void CoherentLabels::collect(const NeighborView& view, std::uint32_t count) {
-    labels_.clear();
-    std::uint32_t last = 0;  // neighbours mostly agree with the one before
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const Label label{view.linear[i], view.origin[i]};
-        if (i > 0 && labels_[last].label == label) {
-            ++labels_[last].votes;
-            continue;
-        }
-        std::uint32_t s = (label.linear * 0x9E3779B1u ^ label.origin * 0x85EBCA77u) >> 23;
-        while (slot_[s] != 0 && labels_[slot_[s] - 1u].label != label) s = (s + 1) % kSlots;
-        if (slot_[s] == 0) {
-            labels_.push_back({label, 0, i});
-            slot_[s] = static_cast<std::uint16_t>(labels_.size());
-            used_.push_back(s);
-        }
-        last = slot_[s] - 1u;
-        ++labels_[last].votes;
-    }
-    for (const std::uint32_t s : used_) slot_[s] = 0;
-    used_.clear();
-    std::sort(labels_.begin(), labels_.end(), [](const CoherentLabel& a, const CoherentLabel& b) {
-        return a.votes != b.votes ? a.votes > b.votes : a.label < b.label;
-    });
-}
-
 Candidate coherent_candidate(const SynthesisProblem& problem, const ProblemLevel& level, VoxelIndex v,
                              const Choice& neighbor) {
     return {neighbor.label, neighbor.part,
@@ -116,7 +85,7 @@ RandomCandidates::RandomCandidates(const SynthesisProblem& problem, const Proble
     }
 }
 
-PlaneIndex RandomCandidates::plane_in_cone(VoxelIndex v, std::uint64_t bits) const {
+PlaneIndex RandomCandidates::plane(VoxelIndex v, std::uint64_t bits) const {
     const Vec3f& n = level_.shell->normals[v];
     const PlaneIndex best = level_.best_plane[v];
     // A frame around the normal; that of the best plane, made orthogonal to it.
@@ -138,25 +107,22 @@ std::uint32_t RandomCandidates::rotation(VoxelIndex v, PlaneIndex plane, std::ui
     return transforms.rotation_towards(plane, up);
 }
 
-RandomCandidates::Draw RandomCandidates::draw(VoxelIndex v, std::uint64_t bits) const {
-    const auto u = static_cast<std::uint32_t>(bits >> 32 & 0xFFFF0000u),
-               w = static_cast<std::uint32_t>(bits >> 16 & 0xFFFF0000u);
-    return {plane_in_cone(v, bits), {u, w}, bits};
+TexelPosition RandomCandidates::texel(std::uint64_t bits) {
+    return {static_cast<std::uint32_t>(bits >> 32 & 0xFFFF0000u), static_cast<std::uint32_t>(bits >> 16 & 0xFFFF0000u)};
 }
 
-RandomCandidates::Draw RandomCandidates::draw_solid(VoxelIndex v, std::uint64_t bits) const {
+TexelPosition RandomCandidates::solid_texel(std::uint64_t bits) const {
     const std::vector<std::uint32_t>& list = (bits >> 63) != 0 ? problem_.solid_texels.deep : problem_.solid_texels.all;
     const std::uint32_t pixel = list[index_below(bits << 1, static_cast<std::uint32_t>(list.size()))];
     const auto width = static_cast<std::uint32_t>(problem_.map.width());
-    return {plane_in_cone(v, bits),
-            {middle_of(pixel % width, problem_.map.width()), middle_of(pixel / width, problem_.map.height())},
-            bits};
+    return {middle_of(pixel % width, problem_.map.width()), middle_of(pixel / width, problem_.map.height())};
 }
 
-Candidate RandomCandidates::finish(VoxelIndex v, const Draw& draw, const FixedPoint& p) const {
-    const LinearIndex linear = problem_.transforms.index(draw.plane, rotation(v, draw.plane, scramble(draw.bits)));
+Candidate RandomCandidates::candidate(VoxelIndex v, PlaneIndex plane, const TexelPosition& texel, const FixedPoint& p,
+                                      std::uint64_t bits) const {
+    const LinearIndex linear = problem_.transforms.index(plane, rotation(v, plane, scramble(bits)));
     const LinearPart part = problem_.transforms.linear_part(linear);
-    Label label = label_through(problem_.map, linear, part, p, draw.texel);
+    Label label = label_through(problem_.map, linear, part, p, texel);
     if (const auto steps = static_cast<std::uint32_t>(problem_.settings.translations); steps > 0) {
         const auto snap = [&](std::uint32_t share) { return (((share * steps) >> 16) * 65536u / steps) & 0xFFFFu; };
         label.origin = snap(label.origin >> 16) << 16 | snap(label.origin & 0xFFFFu);

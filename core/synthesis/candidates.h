@@ -16,28 +16,6 @@ struct Candidate {
     TexelPosition texel;
 };
 
-/// A label that neighbours have chosen.
-struct CoherentLabel {
-    Label label;
-    std::uint32_t votes = 0;
-    std::uint32_t first_seen = 0;  ///< position in the voxel's list of neighbours
-};
-
-/// The distinct labels of a voxel's neighbours, most votes first, then by label. Owns its memory, so
-/// that one object serves many voxels without allocating.
-class CoherentLabels {
-  public:
-    CoherentLabels();
-    void collect(const NeighborView& view, std::uint32_t count);
-    [[nodiscard]] const std::vector<CoherentLabel>& labels() const { return labels_; }
-
-  private:
-    static constexpr std::uint32_t kSlots = 512;
-    std::vector<std::uint16_t> slot_;  // position in labels_ plus one
-    std::vector<std::uint32_t> used_;
-    std::vector<CoherentLabel> labels_;
-};
-
 /// The neighbour's label, as it stands.
 Candidate coherent_candidate(const SynthesisProblem& problem, const ProblemLevel& level, VoxelIndex v,
                              const Choice& neighbor);
@@ -52,28 +30,23 @@ Candidate transported_candidate(const SynthesisProblem& problem, const ProblemLe
 Candidate snapped_candidate(const SynthesisProblem& problem, const ProblemLevel& level, VoxelIndex v,
                             const FixedPoint& probe, const Choice& neighbor);
 
-/// Draws the plane and the texel of random candidates, and the rest of the label only on demand, as
-/// most candidates fail by these two.
+/// Random candidates in steps, as most fail by the texel alone, and most others by the plane: first the
+/// texel, then the plane, then the rotation and the label that shows the texel. All from 64 bits.
 class RandomCandidates {
   public:
     RandomCandidates(const SynthesisProblem& problem, const ProblemLevel& level);
 
-    struct Draw {
-        PlaneIndex plane = 0;
-        TexelPosition texel;  ///< at the voxel, or at its probe
-        std::uint64_t bits = 0;
-    };
-
-    /// Plane within the cone around the normal; texel anywhere.
-    [[nodiscard]] Draw draw(VoxelIndex v, std::uint64_t bits) const;
-    /// Texel in the solid part, one half of the time in its deeper half.
-    [[nodiscard]] Draw draw_solid(VoxelIndex v, std::uint64_t bits) const;
-
-    /// The label that shows the texel at `p`, turned to follow the orientation field.
-    [[nodiscard]] Candidate finish(VoxelIndex v, const Draw& draw, const FixedPoint& p) const;
+    /// Any position of the exemplar.
+    [[nodiscard]] static TexelPosition texel(std::uint64_t bits);
+    /// A position in the solid part, half of the time in its deeper half.
+    [[nodiscard]] TexelPosition solid_texel(std::uint64_t bits) const;
+    /// The plane closest to a random direction in the cone around the voxel's normal.
+    [[nodiscard]] PlaneIndex plane(VoxelIndex v, std::uint64_t bits) const;
+    /// The label in `plane` that shows `texel` at `p`, turned to follow the orientation field.
+    [[nodiscard]] Candidate candidate(VoxelIndex v, PlaneIndex plane, const TexelPosition& texel, const FixedPoint& p,
+                                      std::uint64_t bits) const;
 
   private:
-    [[nodiscard]] PlaneIndex plane_in_cone(VoxelIndex v, std::uint64_t bits) const;
     [[nodiscard]] std::uint32_t rotation(VoxelIndex v, PlaneIndex plane, std::uint64_t bits) const;
 
     const SynthesisProblem& problem_;

@@ -31,8 +31,10 @@ class VoxelEnergy {
     [[nodiscard]] std::uint32_t neighbors() const { return count_; }
     [[nodiscard]] const NeighborBlock& block(std::uint32_t i) const { return blocks_[i / 8]; }
 
-    /// A lower bound from what a draw already tells: first half, distortion and border.
-    [[nodiscard]] Energy bound(PlaneIndex plane, const TexelPosition& texel) const {
+    /// Lower bounds from what is known of a random candidate before its label is made: the first half
+    /// of the transition energy and the border, and with the plane the distortion too.
+    [[nodiscard]] Energy bound(const TexelPosition& texel) const { return first_half(texel) + weigh(border(texel)); }
+    [[nodiscard]] Energy bound(const TexelPosition& texel, PlaneIndex plane) const {
         return first_half(texel) + weigh(distortion(plane) + border(texel));
     }
 

@@ -24,12 +24,24 @@ struct NeighborView {
     std::int32_t expected_squares = 0;  ///< sum over w of |I(M(v, l_w))|^2
 };
 
+/// A label that neighbours have chosen.
+struct CoherentLabel {
+    Label label;
+    std::uint32_t votes = 0;
+    std::uint32_t first_seen = 0;  ///< position in the voxel's list of neighbours
+};
+
 /// The two halves of E_transition in section 4.2.2, in squared steps of 8-bit channels. Both sets
 /// below give the same integers.
 struct MismatchKernels {
     /// Gathers the view of a voxel. Lanes past `count` hold anything.
     void (*view_neighbors)(const TexelLevel& level, const Choice* choices, const NeighborBlock* blocks,
                            std::uint32_t count, NeighborView& view);
+
+    /// The distinct labels of a view in the order in which they are first seen.
+    /// \param labels  room for `count` entries
+    /// \return how many there are
+    std::uint32_t (*distinct_labels)(const NeighborView& view, std::uint32_t count, CoherentLabel* labels);
 
     /// sum over w of |I(M(w, k)) - I(M(w, l_w))|^2 for the candidate k that shows `texel` at the voxel;
     /// gives up with some value above `limit` once the sum exceeds it.

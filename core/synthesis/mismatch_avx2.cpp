@@ -4,6 +4,8 @@
 
 #include <immintrin.h>
 
+#include <bit>
+
 // Only these functions may use AVX2; they are called after a look at the processor.
 #define FRETWORK_AVX2 __attribute__((target("avx2")))
 #define FRETWORK_AVX2_INLINE __attribute__((target("avx2"), always_inline)) inline
@@ -30,11 +32,12 @@ FRETWORK_AVX2_INLINE Fetcher make_fetcher(const TexelLevel& level) {
             _mm_cvtsi32_si128(level.v_shift)};
 }
 
-/// Eight texels at (u, v) + linear part * offset.
+/// Eight texels at (u, v) + linear part * offset. The offset's z comes twice: alone in the lower halves
+/// of the lanes and alone in the upper ones.
 FRETWORK_AVX2_INLINE __m256i fetch(const Fetcher& f, __m256i u, __m256i v, __m256i u_xy, __m256i v_xy, __m256i uv_z,
-                                   __m256i xy, __m256i z) {
-    const __m256i du = _mm256_add_epi32(_mm256_madd_epi16(u_xy, xy), _mm256_madd_epi16(uv_z, z));
-    const __m256i dv = _mm256_add_epi32(_mm256_madd_epi16(v_xy, xy), _mm256_madd_epi16(uv_z, _mm256_slli_epi32(z, 16)));
+                                   __m256i xy, __m256i z_low, __m256i z_high) {
+    const __m256i du = _mm256_add_epi32(_mm256_madd_epi16(u_xy, xy), _mm256_madd_epi16(uv_z, z_low));
+    const __m256i dv = _mm256_add_epi32(_mm256_madd_epi16(v_xy, xy), _mm256_madd_epi16(uv_z, z_high));
     const __m256i at_u = _mm256_add_epi32(u, _mm256_sll_epi32(du, f.u_shift));
     const __m256i at_v = _mm256_add_epi32(v, _mm256_sll_epi32(dv, f.v_shift));
     const __m256i shares = _mm256_blend_epi16(_mm256_srli_epi32(at_u, 16), at_v, 0xAA);
@@ -94,7 +97,9 @@ FRETWORK_AVX2 void view_neighbors(const TexelLevel& level, const Choice* choices
         _mm256_store_si256(reinterpret_cast<__m256i*>(view.color + i), r[5]);
         _mm256_store_si256(reinterpret_cast<__m256i*>(view.linear + i), r[6]);
         _mm256_store_si256(reinterpret_cast<__m256i*>(view.origin + i), r[7]);
-        __m256i expected = fetch(f, r[0], r[1], r[2], r[3], r[4], load(b.back_xy), load(b.back_z));
+        const __m256i z = load(b.z);
+        __m256i expected = fetch(f, r[0], r[1], r[2], r[3], r[4], load(b.back_xy), _mm256_srli_epi32(z, 16),
+                                 _mm256_andnot_si256(_mm256_set1_epi32(0xFFFF), z));
         if (count - i < 8) expected = _mm256_and_si256(expected, first_lanes(count - i));
         square_sums = _mm256_add_epi32(square_sums, squares(expected));
         // 31 blocks of twice 255 stay below 2^16.
@@ -107,6 +112,34 @@ FRETWORK_AVX2 void view_neighbors(const TexelLevel& level, const Choice* choices
     view.expected_squares = add_lanes(square_sums);
 }
 
+FRETWORK_AVX2 std::uint32_t distinct_labels(const NeighborView& view, std::uint32_t count, CoherentLabel* labels) {
+    constexpr std::uint32_t kWords = (kMaxNeighbors + 63) / 64;
+    std::uint64_t left[kWords] = {};  // one bit per neighbour whose label is not counted yet
+    for (std::uint32_t w = 0; 64 * w < count; ++w)
+        left[w] = count - 64 * w >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (count - 64 * w)) - 1;
+    std::uint32_t distinct = 0;
+    for (std::uint32_t word = 0; 64 * word < count; ++word)
+        while (left[word] != 0) {
+            const std::uint32_t i = 64 * word + static_cast<std::uint32_t>(std::countr_zero(left[word]));
+            const __m256i linear = _mm256_set1_epi32(static_cast<int>(view.linear[i]));
+            const __m256i origin = _mm256_set1_epi32(static_cast<int>(view.origin[i]));
+            std::uint32_t votes = 0;
+            for (std::uint32_t w = word; 64 * w < count; ++w) {
+                std::uint64_t same = 0;
+                for (std::uint32_t j = 64 * w; j < count && j < 64 * w + 64; j += 8) {
+                    const __m256i equal = _mm256_and_si256(_mm256_cmpeq_epi32(load(view.linear + j), linear),
+                                                           _mm256_cmpeq_epi32(load(view.origin + j), origin));
+                    same |= static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_castsi256_ps(equal))) << (j % 64);
+                }
+                same &= left[w];
+                left[w] ^= same;
+                votes += static_cast<std::uint32_t>(std::popcount(same));
+            }
+            labels[distinct++] = {{view.linear[i], view.origin[i]}, votes, i};
+        }
+    return distinct;
+}
+
 FRETWORK_AVX2 std::int32_t disagreement(const TexelLevel& level, const NeighborBlock* blocks, std::uint32_t count,
                                         const NeighborView& view, const TexelPosition& texel, const LinearPart& part,
                                         std::int32_t limit) {
@@ -117,7 +150,9 @@ FRETWORK_AVX2 std::int32_t disagreement(const TexelLevel& level, const NeighborB
     std::int32_t sum = 0;
     for (std::uint32_t i = 0; i < count && sum <= limit; i += 8) {
         const NeighborBlock& b = blocks[i / 8];
-        const __m256i seen = fetch(f, u, v, u_xy, v_xy, uv_z, load(b.out_xy), load(b.out_z));
+        const __m256i z = load(b.z);
+        const __m256i seen = fetch(f, u, v, u_xy, v_xy, uv_z, load(b.out_xy),
+                                   _mm256_and_si256(z, _mm256_set1_epi32(0xFFFF)), _mm256_slli_epi32(z, 16));
         const __m256i wanted = load(view.color + i);
         __m256i difference = _mm256_sub_epi8(_mm256_max_epu8(seen, wanted), _mm256_min_epu8(seen, wanted));
         if (count - i < 8) difference = _mm256_and_si256(difference, first_lanes(count - i));
@@ -128,7 +163,7 @@ FRETWORK_AVX2 std::int32_t disagreement(const TexelLevel& level, const NeighborB
 
 }  // namespace
 
-const MismatchKernels kAvx2Mismatch{view_neighbors, disagreement};
+const MismatchKernels kAvx2Mismatch{view_neighbors, distinct_labels, disagreement};
 
 }  // namespace fretwork
 

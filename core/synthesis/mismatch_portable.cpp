@@ -10,9 +10,9 @@ std::uint32_t fetch(const TexelLevel& level, const TexelPosition& t) {
 
 TexelPosition moved(const TexelLevel& level, const TexelPosition& texel, const LinearPart& part, std::int32_t xy,
                     std::int32_t z) {
-    const std::int32_t x = low16(xy), y = high16(xy), height = low16(z);
-    const std::int32_t u = low16(part.u_xy) * x + high16(part.u_xy) * y + low16(part.uv_z) * height;
-    const std::int32_t v = low16(part.v_xy) * x + high16(part.v_xy) * y + high16(part.uv_z) * height;
+    const std::int32_t x = low16(xy), y = high16(xy);
+    const std::int32_t u = low16(part.u_xy) * x + high16(part.u_xy) * y + low16(part.uv_z) * z;
+    const std::int32_t v = low16(part.v_xy) * x + high16(part.v_xy) * y + high16(part.uv_z) * z;
     return {texel.u + (static_cast<std::uint32_t>(u) << level.u_shift),
             texel.v + (static_cast<std::uint32_t>(v) << level.v_shift)};
 }
@@ -26,7 +26,8 @@ void view_neighbors(const TexelLevel& level, const Choice* choices, const Neighb
         view.color[i] = c.color;
         view.linear[i] = c.label.linear;
         view.origin[i] = c.label.origin;
-        const std::uint32_t expected = fetch(level, moved(level, c.texel, c.part, b.back_xy[i % 8], b.back_z[i % 8]));
+        const std::uint32_t expected =
+            fetch(level, moved(level, c.texel, c.part, b.back_xy[i % 8], high16(b.z[i % 8])));
         for (int channel = 0; channel < 4; ++channel) {
             const auto value = static_cast<std::int32_t>(expected >> (8 * channel) & 0xFFu);
             sum[channel] += value;
@@ -37,13 +38,25 @@ void view_neighbors(const TexelLevel& level, const Choice* choices, const Neighb
     view.expected_squares = squares;
 }
 
+std::uint32_t distinct_labels(const NeighborView& view, std::uint32_t count, CoherentLabel* labels) {
+    std::uint32_t distinct = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Label label{view.linear[i], view.origin[i]};
+        std::uint32_t d = 0;
+        while (d < distinct && labels[d].label != label) ++d;
+        if (d == distinct) labels[distinct++] = {label, 0, i};
+        ++labels[d].votes;
+    }
+    return distinct;
+}
+
 std::int32_t disagreement(const TexelLevel& level, const NeighborBlock* blocks, std::uint32_t count,
                           const NeighborView& view, const TexelPosition& texel, const LinearPart& part,
                           std::int32_t limit) {
     std::int32_t sum = 0;
     for (std::uint32_t i = 0; i < count && sum <= limit; ++i) {
         const NeighborBlock& b = blocks[i / 8];
-        const std::uint32_t seen = fetch(level, moved(level, texel, part, b.out_xy[i % 8], b.out_z[i % 8]));
+        const std::uint32_t seen = fetch(level, moved(level, texel, part, b.out_xy[i % 8], low16(b.z[i % 8])));
         for (int channel = 0; channel < 4; ++channel) {
             const std::int32_t difference = static_cast<std::int32_t>(seen >> (8 * channel) & 0xFFu) -
                                             static_cast<std::int32_t>(view.color[i] >> (8 * channel) & 0xFFu);
@@ -55,7 +68,7 @@ std::int32_t disagreement(const TexelLevel& level, const NeighborBlock* blocks, 
 
 }  // namespace
 
-const MismatchKernels kPortableMismatch{view_neighbors, disagreement};
+const MismatchKernels kPortableMismatch{view_neighbors, distinct_labels, disagreement};
 
 bool machine_has_avx2() {
 #if defined(__x86_64__)

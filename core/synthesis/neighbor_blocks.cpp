@@ -9,11 +9,17 @@
 namespace fretwork {
 namespace {
 
-LevelOffset pack_offset(const Vec3f& offset, float cells_per_voxel) {
-    const auto convert = [&](float x) {
-        return static_cast<std::int32_t>(std::lrint(std::clamp(x * cells_per_voxel * 4096.0F, -32767.0F, 32767.0F)));
-    };
-    return {pack16(convert(offset.x()), convert(offset.y())), pack16(convert(offset.z()), 0)};
+/// A coordinate of an offset: cells with 12 fractional bits.
+std::int32_t to_cells(float voxels, float unit) {
+    return round_to_int(std::clamp(voxels * unit, -32767.0F, 32767.0F));
+}
+
+void fill_lane(NeighborBlock& b, std::uint32_t lane, VoxelIndex neighbor, const Vec3f& out, const Vec3f& back,
+               float unit) {
+    b.out_xy[lane] = pack16(to_cells(out.x(), unit), to_cells(out.y(), unit));
+    b.back_xy[lane] = pack16(to_cells(back.x(), unit), to_cells(back.y(), unit));
+    b.z[lane] = pack16(to_cells(out.z(), unit), to_cells(back.z(), unit));
+    b.neighbor[lane] = neighbor;
 }
 
 }  // namespace
@@ -31,27 +37,22 @@ NeighborBlocks pack_neighbors(const PyramidLevel& level, int level_index, const 
         packed.count[v] = static_cast<std::uint16_t>(count);
         blocks += (count + 7) / 8;
     }
-    packed.blocks.resize(blocks);
+    // Written first by the threads that fill it, not by one that clears it.
+    packed.blocks = std::make_unique_for_overwrite<NeighborBlock[]>(blocks);
+    packed.size = blocks;
 
-    const float cells_per_voxel = std::ldexp(1.0F, -level_index);
+    const float unit = std::ldexp(4096.0F, -level_index);
+    // In the order of the voxels, not of the visits: rows of neighbours are read again while they are
+    // still in the cache, and the blocks are written as eight streams.
     parallel_for(voxels, 512, [&](std::size_t i) {
-        const VoxelIndex v = subpasses.order[i];
-        NeighborBlock* block = packed.blocks.data() + packed.first[v];
-        for (std::uint32_t j = 0; j < (packed.count[v] + 7u) / 8u * 8u; ++j) {
-            NeighborBlock& b = block[j / 8];
-            const std::uint32_t lane = j % 8;
-            if (j < packed.count[v]) {
-                const std::uint32_t pair = n.first[v] + j;
-                const LevelOffset out = pack_offset(n.offset[pair], cells_per_voxel);
-                const LevelOffset back = pack_offset(n.offset[n.reverse[pair]], cells_per_voxel);
-                b.out_xy[lane] = out.xy, b.out_z[lane] = out.z;
-                b.back_xy[lane] = back.xy, b.back_z[lane] = back.z;
-                b.neighbor[lane] = n.neighbor[pair];
-            } else {
-                b.out_xy[lane] = b.out_z[lane] = b.back_xy[lane] = b.back_z[lane] = 0;
-                b.neighbor[lane] = v;
-            }
-        }
+        const auto v = static_cast<VoxelIndex>(i);
+        NeighborBlock* block = packed.blocks.get() + packed.first[v];
+        const std::uint32_t count = packed.count[v], first = n.first[v];
+        for (std::uint32_t j = 0; j < count; ++j)
+            fill_lane(block[j / 8], j % 8, n.neighbor[first + j], n.offset[first + j], n.offset[n.reverse[first + j]],
+                      unit);
+        for (std::uint32_t j = count; j % 8 != 0; ++j)
+            fill_lane(block[j / 8], j % 8, v, Vec3f::Zero(), Vec3f::Zero(), unit);
     });
     return packed;
 }

@@ -1,7 +1,9 @@
 // N(v) of the paper, laid out for the inner loop: eight neighbours per block.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/pyramid/voxel_pyramid.h"
@@ -11,8 +13,9 @@ namespace fretwork {
 
 /// Offsets as in LevelOffset. Unused lanes repeat the voxel itself with zero offsets.
 struct alignas(32) NeighborBlock {
-    std::int32_t out_xy[8], out_z[8];    ///< from the voxel to its neighbour, in the voxel's tangent plane
-    std::int32_t back_xy[8], back_z[8];  ///< from the neighbour to the voxel, in the neighbour's
+    std::int32_t out_xy[8];   ///< from the voxel to its neighbour, in the voxel's tangent plane
+    std::int32_t back_xy[8];  ///< from the neighbour to the voxel, in the neighbour's
+    std::int32_t z[8];        ///< of `out` in the lower half, of `back` in the upper
     std::uint32_t neighbor[8];
 };
 
@@ -20,7 +23,8 @@ struct alignas(32) NeighborBlock {
 struct NeighborBlocks {
     std::vector<std::uint32_t> first;  ///< per voxel
     std::vector<std::uint16_t> count;  ///< |N(v)|
-    std::vector<NeighborBlock> blocks;
+    std::unique_ptr<NeighborBlock[]> blocks;
+    std::size_t size = 0;  ///< of blocks
 };
 
 /// Most neighbours that are looked at; a 5x5x5 cube holds 124, more only where sheets meet in it.

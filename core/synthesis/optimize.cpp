@@ -36,7 +36,7 @@ class Improver {
         energy_.look_at(v, choices_);
         best_energy_ = admissible(best_) ? energy_.of(best_, kNoEnergy) : kNoEnergy;
 
-        coherent_.collect(energy_.view(), energy_.neighbors());
+        collect_labels();
         const int tried = try_neighbors();
         try_random(tried);
         return {best_.texel, best_.part, problem_.color_at(level_, best_.texel), best_.label};
@@ -45,6 +45,15 @@ class Improver {
   private:
     [[nodiscard]] bool admissible(const Candidate& c) const {
         return probe_ == nullptr || problem_.solid_at(texel_at(problem_.map, c.part, c.label.origin, *probe_));
+    }
+
+    /// Most votes first, so that a good label is known early; then by label.
+    void collect_labels() {
+        labels_.resize(energy_.neighbors());
+        labels_.resize(problem_.kernels.distinct_labels(energy_.view(), energy_.neighbors(), labels_.data()));
+        std::sort(labels_.begin(), labels_.end(), [](const CoherentLabel& a, const CoherentLabel& b) {
+            return a.votes != b.votes ? a.votes > b.votes : a.label < b.label;
+        });
     }
 
     [[nodiscard]] const Choice& neighbor(std::uint32_t i) const { return choices_[energy_.block(i).neighbor[i % 8]]; }
@@ -61,21 +70,20 @@ class Improver {
     /// \return how many of the candidates that takes up
     int try_neighbors() {
         const SynthesisSettings& s = problem_.settings;
-        const auto& labels = coherent_.labels();
-        const std::size_t coherent = std::min(labels.size(), static_cast<std::size_t>(s.candidates));
+        const std::size_t coherent = std::min(labels_.size(), static_cast<std::size_t>(s.candidates));
         for (std::size_t i = 0; i < coherent; ++i)
-            consider(coherent_candidate(problem_, level_, v_, neighbor(labels[i].first_seen)));
+            consider(coherent_candidate(problem_, level_, v_, neighbor(labels_[i].first_seen)));
         if (probe_ != nullptr)
             for (std::size_t i = 0; i < coherent; ++i)
-                consider(snapped_candidate(problem_, level_, v_, *probe_, neighbor(labels[i].first_seen)));
+                consider(snapped_candidate(problem_, level_, v_, *probe_, neighbor(labels_[i].first_seen)));
 
         std::size_t transported = 0;
         if (level_.index >= kFineLevels || probe_ != nullptr)
-            transported = std::min(labels.size(), static_cast<std::size_t>(s.transported));
+            transported = std::min(labels_.size(), static_cast<std::size_t>(s.transported));
         for (std::size_t i = 0; i < transported; ++i) {
-            const std::uint32_t seen = labels[i].first_seen;
+            const std::uint32_t seen = labels_[i].first_seen;
             const NeighborBlock& b = energy_.block(seen);
-            const LevelOffset offset{b.out_xy[seen % 8], b.out_z[seen % 8]};
+            const LevelOffset offset{b.out_xy[seen % 8], low16(b.z[seen % 8])};
             consider(transported_candidate(problem_, level_, v_, neighbor(seen), offset));
         }
         return static_cast<int>((s.count_repeated ? energy_.neighbors() : coherent) + transported);
@@ -86,18 +94,24 @@ class Improver {
         int count = std::max(0, s.candidates - tried);
         if (level_.index < kFineLevels) count = std::min(count, s.fine_random_candidates);
         if (probe_ != nullptr) count = std::max(count, kLeastRandomWhenForced);
-        const bool texel_known = s.translations == 0 && probe_ == nullptr;
+        const bool texel_known = s.translations == 0;  // else the label's origin is rounded and moves it
         for (int i = 0; i < count; ++i) {
             const std::uint64_t bits =
                 counter_random(s.seed, RandomStream::kSynthesisCandidates, epoch_, v_, static_cast<std::uint32_t>(i));
-            if (probe_ != nullptr) {
-                consider(random_.finish(v_, random_.draw_solid(v_, bits), *probe_));
-                continue;
-            }
-            const RandomCandidates::Draw draw = random_.draw(v_, bits);
-            if (texel_known && energy_.bound(draw.plane, draw.texel) > best_energy_) continue;
-            consider(random_.finish(v_, draw, level_.points[v_]));
+            try_random_candidate(bits, texel_known);
         }
+    }
+
+    void try_random_candidate(std::uint64_t bits, bool texel_known) {
+        if (probe_ != nullptr) {
+            consider(random_.candidate(v_, random_.plane(v_, bits), random_.solid_texel(bits), *probe_, bits));
+            return;
+        }
+        const TexelPosition texel = RandomCandidates::texel(bits);
+        if (texel_known && energy_.bound(texel) > best_energy_) return;
+        const PlaneIndex plane = random_.plane(v_, bits);
+        if (texel_known && energy_.bound(texel, plane) > best_energy_) return;
+        consider(random_.candidate(v_, plane, texel, level_.points[v_], bits));
     }
 
     const SynthesisProblem& problem_;
@@ -107,7 +121,7 @@ class Improver {
     const Choices& choices_;
     const RandomCandidates& random_;
     VoxelEnergy energy_;
-    CoherentLabels coherent_;
+    std::vector<CoherentLabel> labels_;
 
     VoxelIndex v_ = 0;
     const FixedPoint* probe_ = nullptr;

@@ -10,7 +10,7 @@
 namespace fretwork {
 namespace {
 
-constexpr int kCells = 16;  // per side of a cube face
+constexpr int kCells = 32;  // per side of a cube face
 
 std::vector<Vec3f> cube_directions() {
     std::vector<Vec3f> directions;

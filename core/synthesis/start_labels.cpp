@@ -9,7 +9,8 @@ namespace {
 
 Choice random_choice(const SynthesisProblem& problem, const ProblemLevel& level, const RandomCandidates& random,
                      VoxelIndex v, std::uint64_t bits) {
-    const Candidate c = random.finish(v, random.draw(v, bits), level.points[v]);
+    const Candidate c =
+        random.candidate(v, random.plane(v, bits), RandomCandidates::texel(bits), level.points[v], bits);
     return {c.texel, c.part, problem.color_at(level, c.texel), c.label};
 }
 

@@ -167,7 +167,7 @@ std::size_t Synthesizer::memory_bytes() const {
     for (const Choices& c : impl_->choices) bytes += c.capacity() * sizeof(Choice);
     for (const std::vector<std::uint32_t>& t : p.stack.levels) bytes += t.capacity() * sizeof(std::uint32_t);
     for (const ProblemLevel& level : p.levels)
-        bytes += level.neighbors.blocks.capacity() * sizeof(NeighborBlock) +
+        bytes += level.neighbors.size * sizeof(NeighborBlock) +
                  level.size() * (sizeof(FixedPoint) + sizeof(PlaneIndex) + sizeof(Vec3f) + 3 * sizeof(float));
     return bytes;
 }

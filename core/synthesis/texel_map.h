@@ -2,6 +2,7 @@
 // instruction set computes the same bits.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "core/base/vec.h"
@@ -18,6 +19,12 @@ namespace fretwork {
 }
 [[nodiscard]] inline std::int32_t high16(std::int32_t pair) {
     return pair >> 16;
+}
+
+/// Nearest integer, to even on a tie, for |x| < 2^22. Adding 1.5 * 2^23 leaves it in the low bits; no
+/// branch, as signs come at random.
+[[nodiscard]] inline std::int32_t round_to_int(float x) {
+    return std::bit_cast<std::int32_t>(x + 12582912.0F) - 0x4B400000;
 }
 
 /// A position in the exemplar: u to the right, v downwards; 2^32 is one period.
@@ -107,10 +114,7 @@ class TexelMap {
     }
 
   private:
-    [[nodiscard]] static std::int32_t quantize(float component, float unit) {
-        const float scaled = component * unit;
-        return static_cast<std::int32_t>(scaled + (scaled < 0.0F ? -0.5F : 0.5F));
-    }
+    [[nodiscard]] static std::int32_t quantize(float component, float unit) { return round_to_int(component * unit); }
     [[nodiscard]] static std::uint32_t dot(std::int32_t x, std::int32_t y, std::int32_t z, const FixedPoint& p) {
         // Modulo 2^32 on purpose: whole periods drop out.
         return static_cast<std::uint32_t>(x) * static_cast<std::uint32_t>(p.x) +
