@@ -14,6 +14,7 @@ enum class RandomStream : std::uint32_t {
     kPattern,
     kTest,
     kRender,
+    kMeshDistance,
 };
 
 /// The same five numbers give the same 64 random bits on every machine and in any order of calls,

@@ -29,7 +29,7 @@ std::vector<Vec3> sample(const TriangleMesh& mesh, std::size_t count, std::uint6
     std::vector<Vec3> points(count);
     parallel_for(count, 4096, [&](std::size_t i) {
         const auto random = [&](std::uint32_t draw) {
-            return unit_interval(counter_random(seed, RandomStream::kSamples, 0, i, draw));
+            return unit_interval(counter_random(seed, RandomStream::kMeshDistance, 0, i, draw));
         };
         const double at = area * (static_cast<double>(i) + random(0)) / static_cast<double>(count);
         const auto found = std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, at);
@@ -47,8 +47,10 @@ OneSidedDistance one_sided(const TriangleMesh& from, const TriangleMesh& to, con
     const SurfaceTree tree(to);
     run.throw_if_stopped();
     std::vector<Vec3> points = sample(from, settings.samples, settings.seed);
+    std::vector<std::uint8_t> used(from.positions_mm.size(), 0);
     for (const Triangle& t : from.triangles)
-        for (const std::uint32_t v : t) points.push_back(from.positions_mm[v]);
+        for (const std::uint32_t v : t)
+            if (used[v] == 0) used[v] = 1, points.push_back(from.positions_mm[v]);
     const std::vector<ClosestPoint> answers = tree.closest(points, std::numeric_limits<double>::infinity(), run);
     OneSidedDistance result;
     for (std::size_t i = 0; i < answers.size(); ++i) {

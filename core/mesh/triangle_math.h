@@ -65,18 +65,31 @@ inline bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
     return !((b - a).cross(c - a).squaredNorm() > 1e-24 * longest2 * longest2);
 }
 
-/// How a segment meets a triangle, with the answer to "which side of this edge" shared by both triangles of the edge:
-/// exchanging the ends of an edge changes the sign of each number below and nothing else.
+/// How a segment meets a triangle.
 struct TriangleCrossing {
     double parameter;  ///< along the segment, in [0, 1]
     bool leaving;      ///< along the normal
-    bool on_edge;      ///< passes exactly through an edge or a corner
+    bool on_edge;      ///< passes exactly through an edge or a corner, as far as double can tell
 };
 
+/// Seen along the segment, as in \cite woop2013watertight: each corner becomes a point of a plane in which the segment
+/// is the origin, by numbers that depend on the corner and the segment alone; the side of an edge is one difference of
+/// two products, whose sign rounding can only turn into zero; and zero counts as a hit. So all triangles of a seam or a
+/// corner agree, and a segment cannot slip through.
 inline std::optional<TriangleCrossing> cross_triangle(const Vec3& from, const Vec3& to, const Vec3& a, const Vec3& b,
                                                       const Vec3& c) {
-    const Vec3 d = to - from, fa = a - from, fb = b - from, fc = c - from;
-    const double ab = d.dot(fa.cross(fb)), bc = d.dot(fb.cross(fc)), ca = d.dot(fc.cross(fa));
+    const Vec3 d = to - from;
+    Eigen::Index z = 0;
+    if (d.cwiseAbs().maxCoeff(&z) == 0.0) return std::nullopt;
+    const Eigen::Index x = (z + 1) % 3, y = (z + 2) % 3;
+    const double shear_x = d[x] / d[z], shear_y = d[y] / d[z];
+    const auto seen = [&](const Vec3& p) {
+        const double depth = p[z] - from[z];
+        return Vec2(p[x] - from[x] - shear_x * depth, p[y] - from[y] - shear_y * depth);
+    };
+    const Vec2 pa = seen(a), pb = seen(b), pc = seen(c);
+    const double ab = pa[0] * pb[1] - pa[1] * pb[0], bc = pb[0] * pc[1] - pb[1] * pc[0],
+                 ca = pc[0] * pa[1] - pc[1] * pa[0];
     const bool any_negative = ab < 0.0 || bc < 0.0 || ca<0.0, any_positive = ab> 0.0 || bc > 0.0 || ca > 0.0;
     if (any_negative == any_positive) return std::nullopt;  // outside, or the segment lies in the plane
     const Vec3 normal = (b - a).cross(c - a);

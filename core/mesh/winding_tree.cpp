@@ -10,7 +10,7 @@ namespace fretwork {
 namespace {
 
 constexpr std::uint32_t kLeaf = 8;
-constexpr double kFar = 2.5;
+constexpr double kFar = 2.0;
 
 /// Spreads the low 21 bits so that two zero bits follow each.
 std::uint64_t spread(std::uint64_t x) {
@@ -73,7 +73,7 @@ void WindingTree::build(std::uint32_t begin, std::uint32_t end) {
 }
 
 WindingTree::Group WindingTree::summary(std::uint32_t begin, std::uint32_t end) const {
-    Group g{Vec3::Zero(), Vec3::Zero(), Eigen::Matrix3d::Zero(), 0.0, begin, end, 0};
+    Group g{Vec3::Zero(), Vec3::Zero(), Eigen::Matrix3d::Zero(), Vec3::Zero(), {}, 0.0, begin, end, 0};
     double weight = 0.0;
     Vec3 low = triangles_[begin].a, high = low;
     for (std::uint32_t i = begin; i < end; ++i) {
@@ -87,12 +87,38 @@ WindingTree::Group WindingTree::summary(std::uint32_t begin, std::uint32_t end) 
     g.center = weight > 0.0 ? Vec3(g.center / weight) : Vec3(0.5 * (low + high));
     for (std::uint32_t i = begin; i < end; ++i) {
         const Corners& t = triangles_[i];
-        const Vec3 area = 0.5 * (t.b - t.a).cross(t.c - t.a);
-        g.area += area;
-        g.moment += ((t.a + t.b + t.c) / 3.0 - g.center) * area.transpose();
+        const Vec3 share = (t.b - t.a).cross(t.c - t.a) / 6.0;
+        // The middles of the sides integrate squares over a triangle exactly.
+        for (const Vec3& m : {Vec3(0.5 * (t.a + t.b)), Vec3(0.5 * (t.b + t.c)), Vec3(0.5 * (t.c + t.a))})
+            add_moments(g, share, m - g.center);
         for (const Vec3* corner : {&t.a, &t.b, &t.c}) g.radius = std::max(g.radius, (*corner - g.center).norm());
     }
     return g;
+}
+
+void WindingTree::add_moments(Group& g, const Vec3& n, const Vec3& d) {
+    g.area += n;
+    g.moment += d * n.transpose();
+    g.squared += 2.0 * n.dot(d) * d + d.squaredNorm() * n;
+    // Coefficients of x^3, y^3, z^3, x^2 y, x^2 z, y^2 x, y^2 z, z^2 x, z^2 y, x y z.
+    std::size_t k = 0;
+    for (int i = 0; i < 3; ++i) g.cubic[k++] += n[i] * d[i] * d[i];
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (i != j) g.cubic[k++] += 2.0 * n[i] * d[i] * d[j] + n[j] * d[i] * d[i];
+    g.cubic[k] += 2.0 * (n[0] * d[1] * d[2] + n[1] * d[0] * d[2] + n[2] * d[0] * d[1]);
+}
+
+double WindingTree::from_afar(const Group& g, const Vec3& r) {
+    const double inverse2 = 1.0 / r.squaredNorm();
+    const double xx = r[0] * r[0], yy = r[1] * r[1], zz = r[2] * r[2];
+    const double cubic = g.cubic[0] * xx * r[0] + g.cubic[1] * yy * r[1] + g.cubic[2] * zz * r[2] +
+                         xx * (g.cubic[3] * r[1] + g.cubic[4] * r[2]) + yy * (g.cubic[5] * r[0] + g.cubic[6] * r[2]) +
+                         zz * (g.cubic[7] * r[0] + g.cubic[8] * r[1]) + g.cubic[9] * r[0] * r[1] * r[2];
+    const double first = g.area.dot(r);
+    const double second = g.moment.trace() - 3.0 * inverse2 * r.dot(g.moment * r);
+    const double third = 1.5 * inverse2 * (5.0 * inverse2 * cubic - g.squared.dot(r));
+    return (first + second + third) * inverse2 * std::sqrt(inverse2) / (4.0 * std::numbers::pi);
 }
 
 double WindingTree::at(const Vec3& point_mm) const {
@@ -100,12 +126,8 @@ double WindingTree::at(const Vec3& point_mm) const {
     for (std::uint32_t i = 0; i < groups_.size();) {
         const Group& g = groups_[i];
         const Vec3 r = g.center - point_mm;
-        const double distance2 = r.squaredNorm();
-        if (distance2 > kFar * kFar * g.radius * g.radius) {
-            // Dipole r.n / |r|^3 and its gradient contracted with the first moments.
-            const double inverse = 1.0 / std::sqrt(distance2), inverse3 = inverse * inverse * inverse;
-            sum += (g.area.dot(r) + g.moment.trace() - 3.0 * inverse * inverse * r.dot(g.moment * r)) * inverse3 /
-                   (4.0 * std::numbers::pi);
+        if (r.squaredNorm() > kFar * kFar * g.radius * g.radius) {
+            sum += from_afar(g, r);
             i = g.next;
         } else if (g.end - g.begin <= kLeaf) {
             for (std::uint32_t t = g.begin; t < g.end; ++t)
