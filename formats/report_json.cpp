@@ -117,7 +117,7 @@ Json seconds_json(const RunReport& r) {
 
 }  // namespace
 
-std::string report_json(const RunReport& r) {
+std::string report_json(const RunReport& r, ReportTimes times) {
     Json json;
     json["version"] = r.version;
     json["input"] = {{"model", r.input.model},
@@ -138,14 +138,12 @@ std::string report_json(const RunReport& r) {
     json["mesh"] = mesh_json(r.mesh.report);
     json["mesh"]["min_feature_mm"] = number(r.mesh.min_feature_mm);
     json["printability"] = printability_json(r);
-    json["seconds"] = seconds_json(r);
-    json["peak_memory_bytes"] = r.peak_memory_bytes;
+    if (times == ReportTimes::kInclude) {
+        json["seconds"] = seconds_json(r);
+        json["peak_memory_bytes"] = r.peak_memory_bytes;
+    }
     json["warnings"] = r.warnings;
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-std::string mesh_report_json(const MeshReport& report) {
-    return mesh_json(report).dump(2) + "\n";
 }
 
 }  // namespace fretwork

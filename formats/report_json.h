@@ -3,15 +3,16 @@
 
 #include <string>
 
-#include "core/mesh/mesh_report.h"
 #include "core/pipeline/run_report.h"
 
 namespace fretwork {
 
-/// One object, keys in the order of the schema, two blanks per level, a line break at the end.
-std::string report_json(const RunReport& report);
+enum class ReportTimes {
+    kInclude,
+    kLeaveOut,  ///< no seconds, no memory: the same run always gives the same text
+};
 
-/// What `info --json` says about a mesh.
-std::string mesh_report_json(const MeshReport& report);
+/// One object, keys in the order of the schema, two blanks per level, a line break at the end.
+std::string report_json(const RunReport& report, ReportTimes times = ReportTimes::kInclude);
 
 }  // namespace fretwork

@@ -12,6 +12,7 @@
 #include "core/pipeline/intended_use.h"
 #include "core/pipeline/keep_regions.h"
 #include "core/pipeline/memory_use.h"
+#include "core/pipeline/output_color.h"
 #include "core/pipeline/prepare_surface.h"
 #include "core/pipeline/resolve_settings.h"
 #include "core/pipeline/settings_schema.h"
@@ -35,9 +36,10 @@ std::vector<PlannedStage> planned_stages() {
 std::vector<SettingAssignment> resolved_document(const Settings& settings, const ResolvedSettings& resolved) {
     Settings full = settings;
     full.shell.thickness_mm = resolved.solidify.thickness_mm;
-    full.shell.voxel_mm = resolved.voxel_mm;
+    full.shell.side = resolved.solidify.side;
+    full.shell.voxel_mm.reset();
     full.shell.resolution = resolved.voxelize.resolution;
-    full.exemplar.width_mm = resolved.exemplar_width_mm;
+    full.exemplar.width_mm = resolved.exemplar_width_mm / settings.synthesis.scale;
     full.synthesis.levels = resolved.pyramid_levels;
     full.structure.youngs_modulus_mpa = resolved.material.youngs_modulus_mpa;
     full.structure.poissons_ratio = resolved.material.poissons_ratio;
@@ -137,7 +139,7 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     report.input.mesh = surface.found;
     std::ranges::copy(surface.warnings, std::back_inserter(report.warnings));
     result.surface = std::move(surface.mesh);
-    const ResolvedSettings resolved = resolve_settings(settings, longest_side(result.surface),
+    const ResolvedSettings resolved = resolve_settings(settings, {longest_side(result.surface), surface.open},
                                                        exemplar_facts(input.exemplar, input.exemplar_width_mm));
     note_resolved(settings, resolved, report);
     check_memory(result.surface, resolved, limits.max_memory_bytes);
@@ -181,6 +183,10 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
         return found;
     });
     note_output(result.carved, carved, report);
+    result.carved.triangle_colors =
+        output_colors(std::move(result.carved.triangle_colors), settings.output.colour, input.exemplar);
+    result.voxel_colors = output_colors(std::move(result.voxel_colors), settings.output.colour, input.exemplar);
+
 
     report.seconds = plan.take_seconds();
     report.seconds_total = plan.total_seconds();
@@ -198,8 +204,8 @@ RunReport check_carve(const CarveInput& input, const Settings& settings, const R
     const PreparedSurface surface = prepare_surface(input.mesh, settings.input, run.slice(0.0, 0.8));
     report.input.mesh = surface.found;
     std::ranges::copy(surface.warnings, std::back_inserter(report.warnings));
-    const ResolvedSettings resolved =
-        resolve_settings(settings, longest_side(surface.mesh), exemplar_facts(input.exemplar, input.exemplar_width_mm));
+    const ResolvedSettings resolved = resolve_settings(settings, {longest_side(surface.mesh), surface.open},
+                                                       exemplar_facts(input.exemplar, input.exemplar_width_mm));
     note_resolved(settings, resolved, report);
     check_memory(surface.mesh, resolved, limits.max_memory_bytes);
     report.peak_memory_bytes = estimated_peak_bytes(surface.mesh, resolved);

@@ -28,6 +28,7 @@ PreparedSurface prepare_surface(const TriangleMesh& mesh, const InputOptions& in
             fmt::format("the model intersects itself in {} pairs of triangles", surface.found.self_intersections));
     if (repaired.counts.border_edges > 0)
         surface.warnings.push_back(fmt::format("the model is open: {} border edges", repaired.counts.border_edges));
+    surface.open = repaired.counts.border_edges > 0;
     surface.mesh = std::move(repaired.mesh);
     surface.source_triangles = std::move(repaired.source_triangles);
     return surface;

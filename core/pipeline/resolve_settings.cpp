@@ -177,16 +177,17 @@ ExemplarFacts exemplar_facts(const Exemplar& exemplar, std::optional<double> nat
     return {exemplar.width, std::max(half, 0.5), natural_width_mm};
 }
 
-ResolvedSettings resolve_settings(const Settings& settings, double longest_side_mm, const ExemplarFacts& exemplar) {
+ResolvedSettings resolve_settings(const Settings& settings, const SurfaceFacts& surface,
+                                  const ExemplarFacts& exemplar) {
     ResolvedSettings r;
-    r.longest_side_mm = longest_side_mm;
-    r.voxelize.resolution = choose_resolution(settings.shell, longest_side_mm);
-    r.voxel_mm = longest_side_mm / r.voxelize.resolution;
+    r.longest_side_mm = surface.longest_side_mm;
+    r.voxelize.resolution = choose_resolution(settings.shell, r.longest_side_mm);
+    r.voxel_mm = r.longest_side_mm / r.voxelize.resolution;
     r.pyramid_levels =
         settings.synthesis.levels.value_or(std::bit_width(static_cast<unsigned>(r.voxelize.resolution - 1)));
 
     r.solidify.thickness_mm = wall_thickness(settings, r);
-    r.solidify.side = settings.shell.side;
+    r.solidify.side = settings.shell.side.value_or(surface.open ? WallSide::kCentred : WallSide::kInward);
     r.solidify.simplify_tolerance_voxels = settings.fabrication.simplify_voxels;
     r.solidify.target_triangles = static_cast<std::size_t>(settings.fabrication.target_triangles);
 

@@ -29,7 +29,13 @@ struct ResolvedSettings {
     std::vector<std::string> warnings;
 };
 
-/// What the sizes of a run depend on besides the settings.
+/// What a run's numbers depend on besides the settings: the scaled model ...
+struct SurfaceFacts {
+    double longest_side_mm = 0.0;
+    bool open = false;  ///< has border edges
+};
+
+/// ... and the exemplar.
 struct ExemplarFacts {
     int width_px = 0;
     double half_stroke_px = 1.0;             ///< half the width of a typical solid stroke
@@ -44,10 +50,9 @@ ExemplarFacts exemplar_facts(const Exemplar& exemplar, std::optional<double> nat
 ///                            without units are often in metres or inches.
 double input_scale(const TriangleMesh& mesh, const InputOptions& input);
 
-/// \param longest_side_mm  of the scaled model's bounding box
 /// \throws ConstraintsNotMet  two values contradict each other; the message names both and one that works.
 /// \throws InvalidSetting     an unknown material.
-ResolvedSettings resolve_settings(const Settings& settings, double longest_side_mm, const ExemplarFacts& exemplar);
+ResolvedSettings resolve_settings(const Settings& settings, const SurfaceFacts& surface, const ExemplarFacts& exemplar);
 
 /// Longest side of the bounding box, in the mesh's units.
 /// \throws InvalidInput  no vertex, or a coordinate that is not finite.

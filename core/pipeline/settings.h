@@ -62,7 +62,7 @@ struct ExemplarOptions {
 
 struct ShellOptions {
     std::optional<double> thickness_mm;
-    WallSide side = WallSide::kInward;
+    std::optional<WallSide> side;
     std::optional<double> voxel_mm;
     std::optional<int> resolution;  ///< voxels along the longest side
 };

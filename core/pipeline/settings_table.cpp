@@ -206,7 +206,8 @@ void add_shell(std::vector<SettingInfo>& t) {
                     "Thickness of the carved wall; at least two voxels.",
                     "2 % of the longest side, at least 2.5 voxels and 1.2 mm"));
     t.push_back(row("shell.side", FIELD(shell.side), "1", {},
-                    "To which side of the model's surface the wall grows; open surfaces need centred."));
+                    "To which side of the model's surface the wall grows; open surfaces need centred.",
+                    "inward; centred for open surfaces"));
     t.push_back(row("shell.voxel_mm", FIELD(shell.voxel_mm), "mm", above(0, 100),
                     "Side of a voxel. Instead of shell.resolution.", "from shell.resolution"));
     t.push_back(row("shell.resolution", FIELD(shell.resolution), "voxels", between(8, 2048),

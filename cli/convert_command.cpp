@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "cli/command.h"
+#include "cli/files.h"
+#include "cli/run_options.h"
+#include "core/base/error.h"
+
+namespace fretwork::cli {
+namespace {
+
+struct ConvertOptions {
+    ModelSource model;
+    std::string output, export_format;
+    double scale = 1.0;
+    RunOptions run;
+};
+
+int convert_command(const ConvertOptions& options, Interrupt& interrupt) {
+    const MeshFormat format = output_format(options.output, options.export_format);
+    check_target(options.output, {options.model.path});
+    const RunControl run = control_of(options.run, interrupt);
+    MeshFile file = read_model(options.model, run.slice(0.0, 0.6));
+    if (!options.run.quiet)
+        for (const std::string& warning : file.warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
+    for (Vec3& p : file.mesh.positions_mm) p *= options.scale;
+    const std::string name = std::filesystem::path(options.model.path).stem().string();
+    const std::string bytes = write_mesh({file.mesh, file.triangle_colors, name}, format);
+    put(options.output, bytes, interrupt);
+    run.checkpoint("write", 1.0);
+    return kDone;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& program, Action& chosen) {
+    auto options = std::make_shared<ConvertOptions>();
+    CLI::App* command = program.add_subcommand("convert", "Turn a model into another format");
+    command->add_option("in", options->model.path, "3MF, STL, OBJ, PLY or OFF; - reads standard input")
+        ->required()
+        ->type_name("IN");
+    command->add_option("out", options->output, "3MF, STL, OBJ, PLY or OFF; - writes standard output")
+        ->required()
+        ->type_name("OUT");
+    command->add_option("--input-format", options->model.format, "Format of IN when the name does not tell")
+        ->type_name("FORMAT");
+    command->add_option("--input-unit", options->model.unit, "Unit of a model whose file names none (millimeter)")
+        ->type_name("UNIT");
+    command->add_option("--export-format", options->export_format, "Format of OUT when the name does not tell")
+        ->type_name("FORMAT");
+    command->add_option("--scale", options->scale, "Factor on all coordinates")
+        ->type_name("X")
+        ->check(CLI::PositiveNumber);
+    add_run_flags(*command, options->run);
+    command->footer("Example:\n  fretwork convert part.stl part.3mf --input-unit inch");
+    command->callback([options, &chosen] {
+        chosen = [options](Interrupt& interrupt) { return convert_command(*options, interrupt); };
+    });
+}
+
+}  // namespace fretwork::cli

@@ -1,0 +1,39 @@
+// Models and results: files, standard input and output.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "cli/interrupt.h"
+#include "core/base/run_control.h"
+#include "formats/mesh_file.h"
+
+namespace fretwork::cli {
+
+inline constexpr std::string_view kStream = "-";
+
+/// Where a model comes from: a path, or `-` with the format named.
+struct ModelSource {
+    std::string path;
+    std::string format;               ///< empty: from the extension
+    std::string unit = "millimeter";  ///< of files that name none
+};
+
+MeshFile read_model(const ModelSource& source, const RunControl& run = {});
+
+/// The format of a result from its extension or name. \throws InvalidSetting  `-` without a format.
+MeshFormat output_format(const std::string& path, const std::string& format);
+
+/// Fails before the work is done rather than after it.
+/// \throws FileError  `path` is a folder, cannot be written, or is one of the `inputs`.
+void check_target(const std::string& path, std::initializer_list<std::string> inputs = {});
+
+/// Puts finished bytes in place: whole or not at all into a file, straight onto a device, a pipe or `-`.
+/// \throws FileError, Cancelled
+void put(const std::string& path, std::string_view bytes, Interrupt& interrupt);
+
+/// All of standard input. \throws InvalidInput  over 4 GiB
+std::string read_stdin();
+
+}  // namespace fretwork::cli

@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+
+#include "cli/command.h"
+#include "cli/files.h"
+#include "cli/pattern_options.h"
+#include "cli/run_options.h"
+#include "core/base/error.h"
+#include "core/exemplar/exemplar.h"
+#include "core/mesh/mesh_report.h"
+#include "core/pipeline/region_schema.h"
+#include "core/pipeline/settings_schema.h"
+#include "formats/facts_text.h"
+#include "formats/image_file.h"
+
+namespace fretwork::cli {
+namespace {
+
+struct InfoOptions {
+    ModelSource model;
+    bool json = false;
+    RunOptions run;
+};
+
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+int print(const Facts& facts, bool as_json) {
+    fmt::print("{}", as_json ? facts_json(facts) : facts_lines(facts));
+    return kDone;
+}
+
+int mesh_info(const InfoOptions& options, const RunControl& run) {
+    const MeshFile file = read_model(options.model, run.slice(0.0, 0.3));
+    const MeshReport report = report_mesh(file.mesh, CountSelfIntersections::kYes, run.slice(0.3, 1.0));
+    const Vec3 size = report.max_mm - report.min_mm;
+    Facts facts;
+    facts.add("file", options.model.path);
+    facts.add("kind", "mesh");
+    facts.add("unit", std::string(length_unit_name(file.unit)));
+    facts.add("colors", !file.triangle_colors.empty());
+    facts.add("size_mm", std::vector<double>{size[0], size[1], size[2]});
+    add_mesh_facts(report, facts);
+    std::vector<Facts> parts;
+    for (const MeshPart& part : file.parts)
+        parts.push_back({{{"name", part.name}, {"triangles", std::int64_t{part.triangle_count}}}});
+    facts.add("parts", parts);
+    facts.add("warnings", file.warnings);
+    return print(facts, options.json);
+}
+
+int picture_info(const InfoOptions& options) {
+    const Image picture = read_image(std::filesystem::path(options.model.path));
+    Facts facts;
+    facts.add("file", options.model.path);
+    facts.add("kind", "exemplar");
+    facts.add("width_px", std::int64_t{picture.width});
+    facts.add("height_px", std::int64_t{picture.height});
+    facts.add("has_alpha", picture.has_alpha);
+    try {
+        const Exemplar exemplar = make_exemplar(picture);
+        facts.add("usable", true);
+        facts.add("solid_fraction", exemplar.solid_fraction());
+        facts.add("tileable", exemplar.tileable);
+    } catch (const InvalidInput& unusable) {
+        facts.add("usable", false);
+        facts.add("reason", unusable.what());
+    }
+    return print(facts, options.json);
+}
+
+FactValue fact_of(const SettingValue& value) {
+    return std::visit([](const auto& held) { return FactValue(held); }, value);
+}
+
+int spec_info(const InfoOptions& options) {
+    PatternOptions pattern;
+    pattern.pattern = options.model.path;
+    const Settings settings = settings_of(pattern);
+    Facts facts;
+    facts.add("file", options.model.path);
+    facts.add("kind", "spec");
+    for (const SettingInfo& info : all_settings())
+        if (const auto value = info.get(settings); value && value != info.get(Settings{}))
+            facts.add("changed." + info.key, fact_of(*value));
+    for (const TableInfo& table : table_infos()) {
+        const auto tables = tables_from(settings);
+        facts.add(table.array,
+                  static_cast<std::int64_t>(std::ranges::count(tables, table.array, &SettingTable::array)));
+    }
+    return print(facts, options.json);
+}
+
+int info_command(const InfoOptions& options, Interrupt& interrupt) {
+    const std::string extension = extension_of(options.model.path);
+    constexpr std::array pictures = {".png", ".jpg", ".jpeg"};
+    if (options.model.format.empty() && extension == ".toml") return spec_info(options);
+    if (options.model.format.empty() && std::ranges::count(pictures, extension) > 0) return picture_info(options);
+    return mesh_info(options, control_of(options.run, interrupt));
+}
+
+}  // namespace
+
+void add_info(CLI::App& program, Action& chosen) {
+    auto options = std::make_shared<InfoOptions>();
+    CLI::App* command =
+        program.add_subcommand("info", "Say what a model, picture or spec holds and what is wrong with it");
+    command->add_option("file", options->model.path, "A model, a PNG or JPEG, or a spec SPEC.toml; - reads a model")
+        ->required()
+        ->type_name("FILE");
+    command->add_flag("--json", options->json, "As JSON instead of key = value lines");
+    command->add_option("--input-format", options->model.format, "Format of a model when the name does not tell")
+        ->type_name("FORMAT");
+    command->add_option("--input-unit", options->model.unit, "Unit of a model whose file names none (millimeter)")
+        ->type_name("UNIT");
+    add_run_flags(*command, options->run);
+    command->footer("Example:\n  fretwork info bunny.off --json");
+    command->callback(
+        [options, &chosen] { chosen = [options](Interrupt& interrupt) { return info_command(*options, interrupt); }; });
+}
+
+}  // namespace fretwork::cli

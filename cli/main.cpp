@@ -1,0 +1,44 @@
+// The `fretwork` program: parse, dispatch, exit code.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/command.h"
+#include "core/pipeline/carve.h"
+
+namespace {
+
+int report_usage(const CLI::App& program, const CLI::ParseError& error) {
+    // Help and version are not mistakes, and are what was asked for: they go to stdout.
+    if (error.get_exit_code() == 0) return program.exit(error);
+    fmt::print(stderr, "fretwork: error: {} (see fretwork -h)\n", error.what());
+    return fretwork::cli::kBadUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    using namespace fretwork::cli;
+    CLI::App program("Carves a pattern, given by an example picture, through the shell of an object.", "fretwork");
+    program.set_version_flag("--version", "fretwork " + fretwork::version());
+    program.require_subcommand(1);
+    program.get_formatter()->column_width(34);
+    program.footer(
+        "Example:\n  fretwork carve bunny.off --size-mm 100 --pattern cells -o out.3mf\n\n"
+        "Each command explains itself with -h.");
+
+    Action chosen;
+    add_carve(program, chosen);
+    add_convert(program, chosen);
+    add_info(program, chosen);
+    add_pattern(program, chosen);
+    add_spec(program, chosen);
+    add_render(program, chosen);
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return report_usage(program, error);
+    }
+    Interrupt interrupt;
+    return run_action(chosen, interrupt);
+}

@@ -1,0 +1,44 @@
+// The flags that say what is carved and how, shared by `carve` and `pattern preview`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/pipeline/choose_exemplar.h"
+#include "core/pipeline/settings.h"
+
+namespace fretwork::cli {
+
+/// Values of the flags. Precedence: defaults < preset < spec < parameter set < -D/--set < named flags.
+struct PatternOptions {
+    std::string pattern;   ///< a built-in by name, or a spec by path
+    std::string exemplar;  ///< picture
+    std::string mask;
+    std::string parameter_file, parameter_set;
+    std::vector<std::string> assignments;
+    std::string preset;
+    std::optional<std::uint64_t> seed;
+    std::optional<double> size_mm, thickness_mm, width_mm;
+    std::optional<int> resolution;
+};
+
+void add_setting_flags(CLI::App& command, PatternOptions& options);
+void add_pattern_flags(CLI::App& command, PatternOptions& options);
+
+/// The settings that the flags add up to.
+/// \throws InvalidSetting, InvalidInput, FileError
+Settings settings_of(const PatternOptions& options);
+
+/// Whether --pattern names a spec rather than a built-in pattern.
+bool names_spec(const std::string& pattern);
+
+/// Reads or draws the exemplar that the settings name.
+/// \throws InvalidSetting  none is named.
+ChosenExemplar exemplar_of(const Settings& settings);
+
+/// Every file that the settings were made from and that they name.
+std::vector<std::string> files_read(const PatternOptions& options, const Settings& settings);
+
+}  // namespace fretwork::cli
