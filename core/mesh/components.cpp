@@ -53,12 +53,12 @@ MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by) {
     return components;
 }
 
-std::vector<MeshPart> split_components(const TriangleMesh& mesh, const MeshComponents& components) {
-    std::vector<MeshPart> parts(components.count);
+std::vector<ComponentMesh> split_components(const TriangleMesh& mesh, const MeshComponents& components) {
+    std::vector<ComponentMesh> parts(components.count);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
         parts[components.of_triangle[t]].source_triangles.push_back(t);
     std::vector<std::uint32_t> moved(mesh.positions_mm.size());
-    for (MeshPart& part : parts) {
+    for (ComponentMesh& part : parts) {
         std::vector<std::uint32_t> used;
         for (const std::uint32_t t : part.source_triangles)
             used.insert(used.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());

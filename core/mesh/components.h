@@ -22,12 +22,12 @@ struct MeshComponents {
 /// \throws InvalidInput  an index past the end.
 MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by = ConnectedBy::kEdge);
 
-struct MeshPart {
+struct ComponentMesh {
     TriangleMesh mesh;
     std::vector<std::uint32_t> source_triangles;  ///< triangle of the whole mesh, ascending
 };
 
 /// One mesh per component, with the vertices it uses, in their old order. A vertex that two components use is copied.
-std::vector<MeshPart> split_components(const TriangleMesh& mesh, const MeshComponents& components);
+std::vector<ComponentMesh> split_components(const TriangleMesh& mesh, const MeshComponents& components);
 
 }  // namespace fretwork

@@ -211,11 +211,11 @@ TEST_CASE("components: by edge and by vertex, numbered by their lowest triangle"
 
 TEST_CASE("components: the parts make up the whole", "[mesh]") {
     const TriangleMesh whole = shuffled(joined(make_linked_tori(20, 5, 12, 8), make_pinched_vertex()), 2);
-    const std::vector<MeshPart> parts = split_components(whole, find_components(whole));
+    const std::vector<ComponentMesh> parts = split_components(whole, find_components(whole));
     REQUIRE(parts.size() == 4);
     double volume = 0.0;
     std::size_t triangles = 0;
-    for (const MeshPart& part : parts) {
+    for (const ComponentMesh& part : parts) {
         volume += volume_mm3(part.mesh);
         triangles += part.mesh.triangles.size();
         CHECK(find_components(part.mesh).count == 1);
