@@ -86,10 +86,13 @@ std::vector<float> alpha_level(const Image& picture) {
 }
 
 std::vector<float> mask_level(const Image& mask, int width, int height) {
-    const Image scaled = resample_image(mask, width, height);
-    std::vector<float> level(scaled.pixels.size());
-    std::ranges::transform(scaled.pixels, level.begin(), [](const Rgba8& c) { return luma(over_white(c)) - 0.5f; });
-    return level;
+    // A mask holds coverage, not light: as alpha it is averaged as it stands.
+    Image coverage{mask.width, mask.height, {}, true};
+    coverage.pixels.resize(mask.pixels.size());
+    std::ranges::transform(mask.pixels, coverage.pixels.begin(), [](const Rgba8& c) -> Rgba8 {
+        return {0, 0, 0, to_byte(luma(over_white(c)))};
+    });
+    return alpha_level(resample_image(coverage, width, height));
 }
 
 std::vector<float> solid_level(const Image& picture, const std::vector<Rgb8>& color, const Image* mask,

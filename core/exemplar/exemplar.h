@@ -22,7 +22,7 @@ struct ExemplarSettings {
     double threshold = 0.5;  ///< luma in [0, 1]
     bool invert = false;     ///< exchange solid and empty
     /// Whether the picture continues across its borders. Empty: decided from the step across them.
-    std::optional<bool> tileable;
+    std::optional<bool> tileable = std::nullopt;
     int max_side_px = 1024;  ///< larger pictures are reduced first
 };
 

@@ -55,7 +55,7 @@ WrapStep measure_wrap_step(std::span<const Rgb8> color, std::span<const std::uin
 }
 
 bool is_tileable(const WrapStep& step) {
-    return step.to_mean <= 1.25 || (step.to_mean <= 2.0 && step.to_largest <= 1.0);
+    return step.to_mean <= 1.25 || (step.to_mean <= 2.0 && step.to_largest <= 1.15);
 }
 
 }  // namespace fretwork

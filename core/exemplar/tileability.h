@@ -20,7 +20,7 @@ struct WrapStep {
                                          int height);
 
 /// A picture tiles if its wrap-around step is an ordinary one: near the mean, or, up to twice the
-/// mean, no larger than the largest inside (a drawing may have an edge along its border by chance).
+/// mean, hardly above the largest inside (a drawing may have an edge along its border by chance).
 [[nodiscard]] bool is_tileable(const WrapStep& step);
 
 }  // namespace fretwork

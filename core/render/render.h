@@ -11,16 +11,16 @@
 namespace fretwork {
 
 struct RenderSettings {
-    int width = 1200;                 ///< px, [16, 8192]
-    int height = 1200;                ///< px, [16, 8192]
-    double azimuth_deg = 30.0;        ///< of the eye around z: 0 looks along +y with +x to the right, 90 along -x
-    double elevation_deg = 20.0;      ///< of the eye above the horizon, [-90, 90]
-    double zoom = 1.0;                ///< 1 frames the whole model, 2 shows half of that width; [0.01, 1000]
-    std::optional<Vec3> look_at_mm;   ///< in the middle of the picture; empty: the middle of the model
-    double field_of_view_deg = 24.0;  ///< (0, 120]; small values flatten perspective
-    int samples_per_axis = 3;         ///< anti-aliasing: squared rays per pixel, [1, 16]
-    bool shadows = true;              ///< soft key light and ambient occlusion
-    double crease_angle_deg = 40.0;   ///< facets that meet at less look smooth; 0 shows every facet
+    int width = 1200;             ///< px, [16, 8192]
+    int height = 1200;            ///< px, [16, 8192]
+    double azimuth_deg = 30.0;    ///< of the eye around z: 0 looks along +y with +x to the right, 90 along -x
+    double elevation_deg = 20.0;  ///< of the eye above the horizon, [-90, 90]
+    double zoom = 1.0;            ///< 1 frames the whole model, 2 shows half of that width; [0.01, 1000]
+    std::optional<Vec3> look_at_mm = std::nullopt;  ///< in the middle of the picture; empty: the middle of the model
+    double field_of_view_deg = 24.0;                ///< (0, 120]; small values flatten perspective
+    int samples_per_axis = 3;                       ///< anti-aliasing: squared rays per pixel, [1, 16]
+    bool shadows = true;                            ///< soft key light and ambient occlusion
+    double crease_angle_deg = 40.0;                 ///< facets that meet at less look smooth; 0 shows every facet
     Rgb8 background_top = {236, 240, 244};
     Rgb8 background_bottom = {190, 198, 208};
     Rgb8 material = {214, 205, 190};  ///< where no colour is given

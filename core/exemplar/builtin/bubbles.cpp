@@ -38,7 +38,10 @@ PatternPictures draw_bubbles() {
     const Torus torus{192, 192};
     const std::vector<Disc> discs = pack(torus, 29.0, 5.5, 8.2, 61);
     const Relief relief{ink(0x3A86C8), ink(0xEAF6FF), ink(0x10294A), ink(0x1D4E89), 4.5, 14.0};
-    return draw(192, 192, [&](const Vec2& p) {
+    // The picture's border lies where it meets edges as often as any other line does, so that it is seen to tile.
+    const Vec2 corner(166, 62);
+    return draw(192, 192, [&](const Vec2& pixel) {
+        const Vec2 p = pixel + corner;
         double outside = std::numeric_limits<double>::infinity();
         for (const Disc& d : discs) outside = std::min(outside, torus.shortest(p - d.center).norm() - d.radius);
         return shade(-outside, relief);

@@ -106,13 +106,15 @@ double regular_polygon(const Vec2& p, int sides, double inner_radius, double cor
 }
 
 Stroke::Stroke(std::vector<Vec2> points, std::vector<double> radius)
-    : points_(std::move(points)), radius_(std::move(radius)), center_(Vec2::Zero()), reach_(0) {
+    : points_(std::move(points)), radius_(std::move(radius)), center_(Vec2::Zero()) {
     Vec2 low = points_.front(), high = points_.front();
     for (const Vec2& p : points_) {
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
     }
     center_ = (low + high) / 2;
+    for (std::size_t i = 0; i + 1 < points_.size(); ++i) lengths_.push_back((points_[i + 1] - points_[i]).norm());
+    widest_ = *std::ranges::max_element(radius_);
     for (std::size_t i = 0; i < points_.size(); ++i)
         reach_ = std::max(reach_, (points_[i] - center_).norm() + radius_[i]);
 }
@@ -124,6 +126,9 @@ double Stroke::distance(const Vec2& p, const Torus& torus) const {
     double best = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
         const Vec2 a = points_[i] - center_, ab = points_[i + 1] - points_[i];
+        // No point of the segment is nearer than its start less its length; most are ruled out without a root.
+        const double spare = best + lengths_[i] + widest_;
+        if (spare > 0 && (q - a).squaredNorm() > spare * spare) continue;
         const double t = std::clamp((q - a).dot(ab) / std::max(ab.squaredNorm(), 1e-12), 0.0, 1.0);
         best = std::min(best, (q - a - t * ab).norm() - (radius_[i] + t * (radius_[i + 1] - radius_[i])));
     }

@@ -72,8 +72,10 @@ class Stroke {
   private:
     std::vector<Vec2> points_;
     std::vector<double> radius_;
+    std::vector<double> lengths_;  ///< of the segments
     Vec2 center_;
-    double reach_;
+    double reach_ = 0;   ///< from the centre to the farthest point of the stroke
+    double widest_ = 0;  ///< largest radius
 };
 
 /// Points along a Catmull-Rom spline through `knots`, `steps` per span.

@@ -15,7 +15,10 @@ PatternPictures draw_scales() {
     const Torus torus{kWidth, kHeight};
     const Ink edge = ink(0x0B4F6C), jade = ink(0x2EC4B6), foam = ink(0xE9FBF4), gold = ink(0xF2C14E);
     const Ink deep = ink(0x061A2B), sea = ink(0x0A3049);
-    return draw(kWidth, kHeight, [&](const Vec2& p) -> Sample {
+    // The picture's border lies where it meets edges as often as any other line does, so that it is seen to tile.
+    const Vec2 corner(2, 10);
+    return draw(kWidth, kHeight, [&](const Vec2& pixel) -> Sample {
+        const Vec2 p = pixel + corner;
         // The lowest row that covers a point is seen, like roof tiles laid from above.
         double best_y = -std::numeric_limits<double>::infinity();
         Vec2 way = Vec2::Zero();
