@@ -10,8 +10,9 @@ namespace {
 /// Facets folded by less than this leave less than a twentieth of a voxel of chamfer.
 constexpr float kFoldCosine = 0.94F;  // 20 degrees
 
-constexpr double kAccepted = 0.15;   // voxels off the faces
-constexpr double kOvershoot = 0.12;  // barycentric; the faces' curvature may carry the point a little outside
+constexpr double kAccepted = 0.15;    // voxels off the faces
+constexpr double kLongestMove = 1.5;  // voxels from the chord it replaces; farther, the planes say nothing
+constexpr int kRounds = 4;
 
 using Vec2d = Eigen::Vector2d;
 using Mat2d = Eigen::Matrix2d;
@@ -38,16 +39,14 @@ class TrianglePlane {
         return inverse_.transpose() * Vec2d(f1 - f0, f2 - f0);
     }
 
-    /// Moves q inside by at least `margin`; false if it was far outside.
-    [[nodiscard]] bool clamp(Vec2d& q, double margin) const {
+    /// The point inside, by at least `margin`, next to q.
+    [[nodiscard]] Vec2d clamped(const Vec2d& q, double margin) const {
         const Vec2d b = inverse_ * q;
         Vec3 bary(1.0 - b.x() - b.y(), b.x(), b.y());
-        if (!(bary.minCoeff() > -kOvershoot)) return false;
-        if (bary.minCoeff() >= margin) return true;
+        if (bary.minCoeff() >= margin) return q;
         bary = bary.cwiseMax(2.0 * margin);
         bary /= bary.sum();
-        q = sides_ * Vec2d(bary[1], bary[2]);
-        return true;
+        return sides_ * Vec2d(bary[1], bary[2]);
     }
 
   private:
@@ -99,26 +98,28 @@ std::optional<WallVertex> feature_on_triangle(const WallField& field, const std:
     const Mat2d step = jacobian.inverse();
     Vec2d q =
         step * Vec2d(jacobian.row(0).dot(plane.flat(a.position_mm)), jacobian.row(1).dot(plane.flat(b.position_mm)));
-    if (!plane.clamp(q, margin)) return std::nullopt;
-
     const double sign = common_sign(corner);
-    WallVertex v;
-    v.feature = true;
-    v.face = a.face == WallFace::kPattern ? b.face : a.face;
-    for (int round = 0; round < 3; ++round) {
+    const Vec2d start = 0.5 * (plane.flat(a.position_mm) + plane.flat(b.position_mm));
+    for (int round = 0; round < kRounds; ++round) {
+        if (!((q - start).norm() < kLongestMove)) return std::nullopt;
         const WallSample s = field.sample(plane.lift(q), sign);
         if (!s.found) return std::nullopt;
-        v.triangle = s.triangle;
         const Vec2d off(face_value(field, s, a.face), face_value(field, s, b.face));
         const double worst = off.cwiseAbs().maxCoeff();
         // On a fold both faces are one function; its value says whether the facets' planes were the right ones.
-        if (worst < 2e-3 || a.face == b.face || round == 2) {
-            if (worst > kAccepted) return std::nullopt;
-            v.position_mm = plane.lift(q);
-            return v;
+        const bool last = a.face == b.face || round + 1 == kRounds;
+        if (worst > 2e-3 && !last) {
+            q -= step * off;
+            continue;
         }
-        q -= step * off;
-        if (!plane.clamp(q, margin)) return std::nullopt;
+        if (worst > kAccepted) return std::nullopt;
+        WallVertex v;
+        v.feature = true;
+        v.face = a.face == WallFace::kPattern ? b.face : a.face;
+        v.triangle = s.triangle;
+        v.position_mm = plane.lift(plane.clamped(q, margin));
+        v.to_target_mm = (plane.lift(q) - v.position_mm).cast<float>();
+        return v;
     }
     return std::nullopt;
 }
@@ -147,9 +148,19 @@ std::optional<WallVertex> corner_in_tetrahedron(const std::array<EdgeEnd, 4>& co
         result.triangle = v->triangle;
     }
     result.feature = true;
-    result.position_mm = center + planes.ldlt().solve(right);
-    const Vec3 b = inverse * (result.position_mm - corner[0].position_mm);
-    if (!(std::min(b.minCoeff(), 1.0 - b.sum()) > margin)) return std::nullopt;
+    const Vec3 target = center + planes.ldlt().solve(right);
+    const double longest = (corner[3].position_mm - corner[0].position_mm).norm();
+    if (!((target - center).norm() < longest)) return std::nullopt;
+    const Vec3 b = inverse * (target - corner[0].position_mm);
+    Eigen::Vector4d bary(1.0 - b.sum(), b[0], b[1], b[2]);
+    if (bary.minCoeff() < margin) {
+        bary = bary.cwiseMax(2.0 * margin);
+        bary /= bary.sum();
+        result.position_mm = corner[0].position_mm + sides * bary.tail<3>();
+    } else {
+        result.position_mm = target;
+    }
+    result.to_target_mm = (target - result.position_mm).cast<float>();
     return result;
 }
 

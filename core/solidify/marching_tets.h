@@ -18,6 +18,9 @@ struct WallVertex {
     std::uint32_t triangle = 0;    ///< of the input, closest
     WallFace face = WallFace::kUpper;
     bool feature = false;  ///< on an edge between faces
+    /// Where a feature would lie if it need not stay inside its simplex, less its position. A wall's edge may leave a
+    /// lattice cell through a side whose ends are both outside; see sharpen.h.
+    Vec3f to_target_mm = Vec3f::Zero();
 };
 
 struct WallMesh {

@@ -12,6 +12,7 @@
 #include "core/solidify/islands.h"
 #include "core/solidify/lattice_shift.h"
 #include "core/solidify/marching_tets.h"
+#include "core/solidify/sharpen.h"
 #include "core/solidify/shell_index.h"
 #include "core/solidify/wall_field.h"
 #include "core/solidify/wall_lattice.h"
@@ -86,15 +87,6 @@ double edge_clamp(const WallLattice& lattice, const SurfaceVoxels& shell) {
     return std::clamp(16.0 * spacing / lattice.step_mm(), 1e-3, 0.2);
 }
 
-TriangleMesh rounded_mesh(WallMesh wall) {
-    TriangleMesh mesh;
-    mesh.positions_mm.resize(wall.vertices.size());
-    for (std::size_t v = 0; v < wall.vertices.size(); ++v)
-        mesh.positions_mm[v] = wall.vertices[v].position_mm.cast<float>().cast<double>();
-    mesh.triangles = std::move(wall.triangles);
-    return mesh;
-}
-
 /// Every triangle shows the pattern at its closest surface point, on outer, inner and hole faces alike.
 void paint(const SurfaceVoxels& shell, const WallField& field, const PatternField& pattern, CarvedMesh& carved,
            const RunControl& run) {
@@ -135,7 +127,9 @@ CarvedMesh solidify(const TriangleMesh& mesh, const SurfaceVoxels& shell, const 
     carved.islands_removed = islands.count;
     carved.islands_volume_mm3 = islands.volume_mm3;
     run.checkpoint(kStage, 0.35);
-    carved.mesh = rounded_mesh(march_tetrahedra(lattice, values, field, edge_clamp(lattice, shell), run));
+    const WallMesh wall = march_tetrahedra(lattice, values, field, edge_clamp(lattice, shell), run);
+    run.checkpoint(kStage, 0.6);
+    carved.mesh = sharpened_mesh(wall, shell.grid.voxel_mm, run);
     if (carved.mesh.triangles.empty())
         throw ConstraintsNotMet("solidify: no material is left; the pattern is empty everywhere");
     run.checkpoint(kStage, 0.7);
