@@ -18,7 +18,7 @@ const Vec3f kGround(0.24f, 0.23f, 0.22f);
 /// What a blocked direction still returns: light that bounced between surfaces.
 const Vec3f kBounce(0.13f, 0.12f, 0.11f);
 constexpr float kKeySpread = 0.14f;  // tangent of the key light's half angle
-constexpr float kGloss = 0.09f, kGlossPower = 48.0f;
+constexpr float kGloss = 0.05f, kGlossPower = 60.0f;
 /// Rays start this far off the surface, in scene units: well above the rounding of a hit, well below any wall.
 constexpr float kLift = 1e-4f;
 
