@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -21,10 +22,6 @@ struct Task {
 
 constexpr double kCellsPerTask = 8192.0;
 
-Corners corners_of(const Triangle& t, std::span<const Vec3> grid_points) {
-    return {grid_points[t[0]], grid_points[t[1]], grid_points[t[2]]};
-}
-
 // A triangle passes through about as many cells as the largest face of its bounding box has.
 double estimated_cells(const Corners& c) {
     const Vec3 size = c[0].cwiseMax(c[1]).cwiseMax(c[2]) - c[0].cwiseMin(c[1]).cwiseMin(c[2]) + Vec3::Ones();
@@ -32,12 +29,12 @@ double estimated_cells(const Corners& c) {
 }
 
 // Shares depend on the triangles alone, not on the threads, and follow the order of the triangles.
-std::vector<Task> share_out(std::span<const Triangle> triangles, std::span<const Vec3> grid_points, int layers) {
+std::vector<Task> share_out(const GriddedMesh& mesh, int layers) {
     std::vector<Task> tasks;
     std::size_t begin = 0;
     double cells = 0.0;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        const Corners corners = corners_of(triangles[t], grid_points);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Corners corners = mesh.corners(static_cast<std::uint32_t>(t));
         const double more = estimated_cells(corners);
         if (cells + more > kCellsPerTask && begin < t) {
             tasks.push_back({begin, t, 0, layers});
@@ -54,7 +51,7 @@ std::vector<Task> share_out(std::span<const Triangle> triangles, std::span<const
         begin = t + 1;
         cells = 0.0;
     }
-    if (begin < triangles.size()) tasks.push_back({begin, triangles.size(), 0, layers});
+    if (begin < mesh.triangles.size()) tasks.push_back({begin, mesh.triangles.size(), 0, layers});
     return tasks;
 }
 
@@ -103,14 +100,13 @@ class LayerOffsets {
 
 }  // namespace
 
-LayeredPatches cut_mesh(std::span<const Triangle> triangles, std::span<const Vec3> grid_points,
-                        const VoxelCoord& extent, const RunControl& run) {
-    const std::vector<Task> tasks = share_out(triangles, grid_points, extent[2]);
+LayeredPatches cut_mesh(const GriddedMesh& mesh, const VoxelCoord& extent, const RunControl& run) {
+    const std::vector<Task> tasks = share_out(mesh, extent[2]);
     std::vector<std::vector<Patch>> of_task(tasks.size());
     parallel_for(tasks.size(), 1, [&](std::size_t k) {
-        for (std::size_t t = tasks[k].triangle_begin; t < tasks[k].triangle_end; ++t)
-            cut_triangle(corners_of(triangles[t], grid_points), static_cast<std::uint32_t>(t), extent, tasks[k].z_begin,
-                         tasks[k].z_end, of_task[k], run);
+        const Task& task = tasks[k];
+        for (std::size_t t = task.triangle_begin; t < task.triangle_end; ++t)
+            cut_triangle(mesh, static_cast<std::uint32_t>(t), extent, task.z_begin, task.z_end, of_task[k], run);
     });
 
     LayerOffsets offsets(of_task, static_cast<std::size_t>(extent[2]));

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "core/base/run_control.h"
-#include "core/mesh/triangle_mesh.h"
 #include "core/shell/triangle_cells.h"
 
 namespace fretwork {
@@ -17,11 +15,9 @@ struct LayeredPatches {
     std::vector<Patch> patches;
 };
 
-/// \param grid_points  vertices in grid coordinates
 /// Cost: linear in the patches and the triangles; both are shared out evenly between the threads.
 /// \throws MemoryLimit  2^32 patches or more.
 /// \throws Cancelled    `run` asked to stop.
-LayeredPatches cut_mesh(std::span<const Triangle> triangles, std::span<const Vec3> grid_points,
-                        const VoxelCoord& extent, const RunControl& run);
+LayeredPatches cut_mesh(const GriddedMesh& mesh, const VoxelCoord& extent, const RunControl& run);
 
 }  // namespace fretwork

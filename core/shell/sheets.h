@@ -3,11 +3,10 @@
 
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/base/vec.h"
-#include "core/mesh/triangle_mesh.h"
+#include "core/shell/triangle_cells.h"
 
 namespace fretwork {
 
@@ -15,10 +14,7 @@ namespace fretwork {
 /// mesh edges, each passing through the closed cell, joins them. Holds scratch space; use one per thread.
 class SheetSplitter {
   public:
-    /// \param triangles   of the mesh
-    /// \param grid_points vertices of the mesh in grid coordinates
-    SheetSplitter(std::span<const Triangle> triangles, std::span<const Vec3> grid_points)
-        : triangles_(triangles), grid_points_(grid_points) {}
+    explicit SheetSplitter(const GriddedMesh& mesh) : mesh_(mesh) {}
 
     /// \param in_cell  triangles that meet the cell, ascending
     /// \param center   of the cell, grid coordinates
@@ -36,11 +32,12 @@ class SheetSplitter {
     };
 
     std::uint32_t root(std::uint32_t user);
-    void join_over_shared_edges(std::span<const std::uint32_t> in_cell, const Vec3& center);
+    void join_pairwise(std::span<const std::uint32_t> in_cell, const Vec3& center);
+    void join_by_sorting_edges(std::span<const std::uint32_t> in_cell, const Vec3& center);
+    void join_over_edge(std::uint32_t a, std::uint32_t b, std::uint32_t from, std::uint32_t to, const Vec3& center);
     void number_sheets();
 
-    std::span<const Triangle> triangles_;
-    std::span<const Vec3> grid_points_;
+    const GriddedMesh& mesh_;
     std::vector<EdgeUse> uses_;
     std::vector<std::uint32_t> parent_;
     std::vector<std::uint32_t> sheet_;

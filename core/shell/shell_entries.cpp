@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/shell/components.h"
@@ -25,49 +27,50 @@ struct Layer {
     std::vector<std::uint32_t> triangles;
 };
 
-// Mean normal of the patches, or of the larger of two sides that cancel.
-Vec3 mean_normal(std::span<const Patch* const> patches, std::span<const Vec3> normal_of) {
+// Mean normal of the patches, or of the larger of two sides that cancel. Zero where no triangle has an area.
+Vec3 mean_normal(std::span<const Patch* const> patches, const GriddedMesh& mesh) {
     // Below this share of the area, what is left of the sum says nothing about a side.
     constexpr double kCancelled = 1e-3;
     Vec3 sum = Vec3::Zero();
     double area = 0.0;
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-        sum += static_cast<double>(patches[i]->area) * normal_of[i];
-        area += static_cast<double>(patches[i]->area);
+    for (const Patch* patch : patches) {
+        sum += static_cast<double>(patch->area) * mesh.normals[patch->triangle];
+        area += static_cast<double>(patch->area);
     }
     if (sum.norm() > kCancelled * area) return sum.normalized();
 
     // Sides are told apart by the first normal there is. Where all areas are zero (the cell is touched at a point
     // or along an edge), every patch counts alike.
-    const auto first =
-        std::find_if(normal_of.begin(), normal_of.end(), [](const Vec3& n) { return n != Vec3::Zero(); });
-    if (first == normal_of.end()) return Vec3::Zero();
+    Vec3 first = Vec3::Zero();
     Vec3 side[2] = {Vec3::Zero(), Vec3::Zero()};
-    for (std::size_t i = 0; i < patches.size(); ++i)
-        side[first->dot(normal_of[i]) < 0.0] +=
-            (area > 0.0 ? static_cast<double>(patches[i]->area) : 1.0) * normal_of[i];
+    for (const Patch* patch : patches) {
+        const Vec3& normal = mesh.normals[patch->triangle];
+        if (first == Vec3::Zero()) first = normal;
+        side[first.dot(normal) < 0.0] += (area > 0.0 ? static_cast<double>(patch->area) : 1.0) * normal;
+    }
     // Two equal sides differ by the rounding of their areas; then the first one decides.
-    return (side[0].norm() >= (1.0 - 1e-5) * side[1].norm() ? side[0] : side[1]).normalized();
+    const Vec3& larger = side[0].norm() >= (1.0 - 1e-5) * side[1].norm() ? side[0] : side[1];
+    return larger.norm() > 0.0 ? larger.normalized() : first;
 }
 
 class LayerBuilder {
   public:
-    LayerBuilder(std::span<const Triangle> triangles, std::span<const Vec3> grid_points, int z, int extent_x)
-        : triangles_(triangles),
-          grid_points_(grid_points),
-          splitter_(triangles, grid_points),
-          z_(z),
-          extent_x_(extent_x) {}
+    LayerBuilder(const GriddedMesh& mesh, int z, int extent_x)
+        : mesh_(mesh), splitter_(mesh), z_(z), extent_x_(static_cast<std::uint32_t>(extent_x)) {}
 
     /// Patches of one layer, triangles ascending.
     Layer build(std::span<const Patch> patches) {
         sort_into_cells(patches);
+        layer_.triangles.reserve(patches.size());
+        layer_.entries.reserve(patches.size() / 2);
         std::size_t begin = 0;
         while (begin < order_.size()) {
             std::size_t end = begin + 1;
             const std::uint32_t cell = patches[order_[begin]].row_x;
             while (end < order_.size() && patches[order_[end]].row_x == cell) ++end;
-            add_cell(patches, begin, end);
+            in_cell_.clear();
+            for (std::size_t i = begin; i < end; ++i) in_cell_.push_back(&patches[order_[i]]);
+            add_cell();
             begin = end;
         }
         return std::move(layer_);
@@ -78,76 +81,75 @@ class LayerBuilder {
     void sort_into_cells(std::span<const Patch> patches) {
         std::vector<std::uint32_t> row_first(1, 0);
         for (const Patch& p : patches) {
-            const std::size_t row = p.row_x / static_cast<std::uint32_t>(extent_x_);
+            const std::size_t row = p.row_x / extent_x_;
             if (row + 1 >= row_first.size()) row_first.resize(row + 2, 0);
             ++row_first[row + 1];
         }
         std::partial_sum(row_first.begin(), row_first.end(), row_first.begin());
-        order_.resize(patches.size());
+        std::vector<std::uint64_t> keys(patches.size());
         std::vector<std::uint32_t> next = row_first;
         for (std::uint32_t i = 0; i < patches.size(); ++i)
-            order_[next[patches[i].row_x / static_cast<std::uint32_t>(extent_x_)]++] = i;
-        const auto by_cell = [&](std::uint32_t a, std::uint32_t b) {
-            return patches[a].row_x != patches[b].row_x ? patches[a].row_x < patches[b].row_x : a < b;
-        };
+            keys[next[patches[i].row_x / extent_x_]++] = std::uint64_t{patches[i].row_x} << 32 | i;
         for (std::size_t row = 0; row + 1 < row_first.size(); ++row)
-            std::sort(order_.begin() + row_first[row], order_.begin() + row_first[row + 1], by_cell);
+            std::sort(keys.begin() + row_first[row], keys.begin() + row_first[row + 1]);
+        order_.resize(patches.size());
+        for (std::size_t i = 0; i < keys.size(); ++i) order_[i] = static_cast<std::uint32_t>(keys[i]);
     }
 
-    void add_cell(std::span<const Patch> patches, std::size_t begin, std::size_t end) {
-        const std::uint32_t row_x = patches[order_[begin]].row_x;
-        const auto extent = static_cast<std::uint32_t>(extent_x_);
-        const VoxelCoord coord = {static_cast<int>(row_x % extent), static_cast<int>(row_x / extent), z_};
+    void add_cell() {
+        const std::uint32_t row_x = in_cell_.front()->row_x;
+        const VoxelCoord coord = {static_cast<int>(row_x % extent_x_), static_cast<int>(row_x / extent_x_), z_};
         const Vec3 center(coord[0] + 0.5, coord[1] + 0.5, coord[2] + 0.5);
-        in_cell_.clear();
-        for (std::size_t i = begin; i < end; ++i) in_cell_.push_back(patches[order_[i]].triangle);
-        const std::vector<std::uint32_t>& sheet = splitter_.split(in_cell_, center);
-        for (std::uint32_t s = 0; s < splitter_.sheets(); ++s) {
-            members_.clear();
-            for (std::size_t i = begin; i < end; ++i)
-                if (sheet[i - begin] == s) members_.push_back(&patches[order_[i]]);
-            add_sheet(coord, center);
+        triangles_.clear();
+        for (const Patch* patch : in_cell_) triangles_.push_back(patch->triangle);
+        const std::vector<std::uint32_t>& sheet = splitter_.split(triangles_, center);
+        if (splitter_.sheets() == 1) {
+            add_sheet(in_cell_, coord, center);
+            return;
         }
+        sheet_first_.assign(splitter_.sheets() + 1, 0);
+        for (const std::uint32_t s : sheet) ++sheet_first_[s + 1];
+        std::partial_sum(sheet_first_.begin(), sheet_first_.end(), sheet_first_.begin());
+        by_sheet_.resize(in_cell_.size());
+        std::vector<std::uint32_t>& next = triangles_;  // not needed any more
+        next.assign(sheet_first_.begin(), sheet_first_.end() - 1);
+        for (std::size_t i = 0; i < in_cell_.size(); ++i) by_sheet_[next[sheet[i]]++] = in_cell_[i];
+        for (std::size_t s = 0; s + 1 < sheet_first_.size(); ++s)
+            add_sheet(std::span(by_sheet_).subspan(sheet_first_[s], sheet_first_[s + 1] - sheet_first_[s]), coord,
+                      center);
     }
 
-    void add_sheet(const VoxelCoord& coord, const Vec3& center) {
+    void add_sheet(std::span<const Patch* const> patches, const VoxelCoord& coord, const Vec3& center) {
         Entry entry;
         entry.coord = coord;
         entry.first_triangle = static_cast<std::uint32_t>(layer_.triangles.size());
-        normals_.clear();
         double area = 0.0;
-        std::size_t closest = 0;
-        for (std::size_t i = 0; i < members_.size(); ++i) {
-            layer_.triangles.push_back(members_[i]->triangle);
-            normals_.push_back(triangle_normal(corners(members_[i]->triangle)));
-            area += static_cast<double>(members_[i]->area);
-            if (members_[i]->closest.squaredNorm() < members_[closest]->closest.squaredNorm()) closest = i;
+        const Patch* closest = patches.front();
+        for (const Patch* patch : patches) {
+            layer_.triangles.push_back(patch->triangle);
+            area += static_cast<double>(patch->area);
+            if (patch->closest.squaredNorm() < closest->closest.squaredNorm()) closest = patch;
         }
-        entry.normal = mean_normal(members_, normals_).cast<float>();
+        entry.normal = mean_normal(patches, mesh_).cast<float>();
         entry.area = static_cast<float>(area);
-        entry.triangle = members_[closest]->triangle;
+        entry.triangle = closest->triangle;
         // The patch holds the point in single precision; put it back into the plane of its triangle.
-        entry.point = center + members_[closest]->closest.cast<double>();
-        const Vec3& normal = normals_[closest];
-        entry.point -= normal * normal.dot(entry.point - grid_points_[triangles_[entry.triangle][0]]);
+        entry.point = center + closest->closest.cast<double>();
+        const Vec3& normal = mesh_.normals[closest->triangle];
+        entry.point -= normal * normal.dot(entry.point - mesh_.points[mesh_.triangles[closest->triangle][0]]);
         layer_.entries.push_back(entry);
     }
 
-    [[nodiscard]] Corners corners(std::uint32_t triangle) const {
-        const Triangle& t = triangles_[triangle];
-        return {grid_points_[t[0]], grid_points_[t[1]], grid_points_[t[2]]};
-    }
-
-    std::span<const Triangle> triangles_;
-    std::span<const Vec3> grid_points_;
+    const GriddedMesh& mesh_;
     SheetSplitter splitter_;
     int z_;
-    int extent_x_;
+    std::uint32_t extent_x_;
     Layer layer_;
     std::vector<std::uint32_t> order_;
-    std::vector<std::uint32_t> in_cell_;
-    std::vector<const Patch*> members_;
-    std::vector<Vec3> normals_;
+    std::vector<const Patch*> in_cell_;
+    std::vector<std::uint32_t> triangles_;
+    std::vector<std::uint32_t> sheet_first_;
+    std::vector<const Patch*> by_sheet_;
 };
 
 void resize(SurfaceVoxels& shell, std::size_t count) {
@@ -177,13 +179,13 @@ void copy_layer(const Layer& layer, std::size_t first_entry, std::size_t first_t
 
 }  // namespace
 
-EntryTriangles make_entries(std::span<const Triangle> triangles, std::span<const Vec3> grid_points,
-                            const LayeredPatches& patches, SurfaceVoxels& shell, const RunControl& run) {
+EntryTriangles make_entries(const GriddedMesh& mesh, const LayeredPatches& patches, SurfaceVoxels& shell,
+                            const RunControl& run) {
     const std::size_t layer_count = patches.first.size() - 1;
     std::vector<Layer> layers(layer_count);
     parallel_for(layer_count, 1, [&](std::size_t z) {
         run.throw_if_stopped();
-        LayerBuilder builder(triangles, grid_points, static_cast<int>(z), shell.grid.extent[0]);
+        LayerBuilder builder(mesh, static_cast<int>(z), shell.grid.extent[0]);
         layers[z] = builder.build(
             std::span(patches.patches).subspan(patches.first[z], patches.first[z + 1] - patches.first[z]));
     });
@@ -200,6 +202,29 @@ EntryTriangles make_entries(std::span<const Triangle> triangles, std::span<const
         layers[z] = {};
     });
     return result;
+}
+
+void fill_missing_normals(const Adjacency& links, std::vector<Vec3f>& normals) {
+    std::vector<VoxelIndex> missing;
+    for (VoxelIndex v = 0; v < normals.size(); ++v)
+        if (normals[v] == Vec3f::Zero()) missing.push_back(v);
+    while (!missing.empty()) {
+        // All of one round look at the round before, so that the order does not matter.
+        std::vector<Vec3f> found(missing.size(), Vec3f::Zero());
+        for (std::size_t i = 0; i < missing.size(); ++i)
+            for (const VoxelIndex w : links.of(missing[i])) found[i] += normals[w];
+        std::vector<VoxelIndex> left;
+        for (std::size_t i = 0; i < missing.size(); ++i)
+            if (found[i].norm() > 1e-3F)
+                normals[missing[i]] = found[i].normalized();
+            else
+                left.push_back(missing[i]);
+        if (left.size() == missing.size()) {
+            for (const VoxelIndex v : left) normals[v] = Vec3f::UnitZ();
+            return;
+        }
+        missing = std::move(left);
+    }
 }
 
 std::vector<std::uint32_t> components_by_lowest_triangle(const Adjacency& adjacency, const EntryTriangles& triangles) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/parallel.h"
+
 namespace fretwork {
 namespace {
 
@@ -140,12 +142,9 @@ double share_of_area(const Polygon& polygon, const VoxelCoord& cell) {
 
 class TriangleCutter {
   public:
-    TriangleCutter(const Corners& triangle, std::uint32_t index, int extent_x, std::vector<Patch>& patches)
-        : triangle_(triangle),
-          normal_(triangle_normal(triangle)),
-          index_(index),
-          extent_x_(extent_x),
-          patches_(patches) {}
+    TriangleCutter(const Corners& triangle, const Vec3& normal, std::uint32_t index, int extent_x,
+                   std::vector<Patch>& patches)
+        : triangle_(triangle), normal_(normal), index_(index), extent_x_(extent_x), patches_(patches) {}
 
     void add_if_met(const Polygon& part, const VoxelCoord& cell) {
         if (part.size == 0) return;
@@ -172,10 +171,20 @@ class TriangleCutter {
 
 }  // namespace
 
-Vec3 triangle_normal(const Corners& triangle) {
-    const Vec3 n = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-    const double length = n.norm();
-    return length > 0.0 ? Vec3(n / length) : Vec3::Zero();
+GriddedMesh lay_into_grid(const TriangleMesh& mesh, const VoxelGrid& grid) {
+    GriddedMesh laid;
+    laid.triangles = mesh.triangles;
+    laid.points.resize(mesh.positions_mm.size());
+    laid.normals.resize(mesh.triangles.size());
+    parallel_for(laid.points.size(), 8192,
+                 [&](std::size_t p) { laid.points[p] = (mesh.positions_mm[p] - grid.origin_mm) / grid.voxel_mm; });
+    parallel_for(laid.normals.size(), 8192, [&](std::size_t t) {
+        const Corners c = laid.corners(static_cast<std::uint32_t>(t));
+        const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
+        const double length = n.norm();
+        laid.normals[t] = length > 0.0 ? Vec3(n / length) : Vec3::Zero();
+    });
+    return laid;
 }
 
 bool segment_meets_cell(const Vec3& a, const Vec3& b, const Vec3& center) {
@@ -224,9 +233,10 @@ bool triangle_meets_cell(const Corners& triangle, const Vec3& center) {
     return std::abs(normal.dot(v[0])) <= half * normal.lpNorm<1>() + slack;
 }
 
-void cut_triangle(const Corners& triangle, std::uint32_t index, const VoxelCoord& extent, int z_begin, int z_end,
+void cut_triangle(const GriddedMesh& mesh, std::uint32_t index, const VoxelCoord& extent, int z_begin, int z_end,
                   std::vector<Patch>& patches, const RunControl& run) {
-    TriangleCutter cutter(triangle, index, extent[0], patches);
+    const Corners triangle = mesh.corners(index);
+    TriangleCutter cutter(triangle, mesh.normals[index], index, extent[0], patches);
     Polygon whole;
     whole.size = 3;
     for (std::size_t c = 0; c < 3; ++c) whole.corner[c] = {triangle[c][0], triangle[c][1], triangle[c][2]};

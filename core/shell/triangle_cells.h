@@ -5,10 +5,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/run_control.h"
 #include "core/base/vec.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/shell/surface_voxels.h"
 
 namespace fretwork {
@@ -18,6 +20,20 @@ namespace fretwork {
 inline constexpr double kTouchVoxels = 1e-9;
 
 using Corners = std::array<Vec3, 3>;
+
+/// A mesh laid into the grid.
+struct GriddedMesh {
+    std::span<const Triangle> triangles;
+    std::vector<Vec3> points;   ///< vertices
+    std::vector<Vec3> normals;  ///< of the triangles, unit; zero where a triangle has no area
+
+    [[nodiscard]] Corners corners(std::uint32_t t) const {
+        return {points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]};
+    }
+};
+
+/// `mesh` must outlive the result.
+GriddedMesh lay_into_grid(const TriangleMesh& mesh, const VoxelGrid& grid);
 
 /// The part of one triangle inside one closed cell.
 struct Patch {
@@ -35,15 +51,12 @@ struct Patch {
 /// The same for the segment from `a` to `b`, with its six axes.
 [[nodiscard]] bool segment_meets_cell(const Vec3& a, const Vec3& b, const Vec3& center);
 
-/// Unit normal by the right-hand rule; zero for a triangle without area.
-[[nodiscard]] Vec3 triangle_normal(const Corners& triangle);
-
-/// Appends the patch of every cell that the triangle meets and whose z is in [z_begin, z_end), in the
+/// Appends the patch of every cell that triangle `index` meets and whose z is in [z_begin, z_end), in the
 /// order of (z, y, x).
 ///
 /// Cost: proportional to the cells found, also for long and thin triangles.
 /// \throws Cancelled  `run` asked to stop.
-void cut_triangle(const Corners& triangle, std::uint32_t index, const VoxelCoord& extent, int z_begin, int z_end,
+void cut_triangle(const GriddedMesh& mesh, std::uint32_t index, const VoxelCoord& extent, int z_begin, int z_end,
                   std::vector<Patch>& patches, const RunControl& run);
 
 }  // namespace fretwork

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/parallel.h"
 #include "core/shell/cell_rows.h"
 #include "core/shell/cut_mesh.h"
 #include "core/shell/links.h"
@@ -72,13 +71,6 @@ VoxelGrid make_grid(const TriangleMesh& mesh, int resolution) {
     return grid;
 }
 
-std::vector<Vec3> to_grid(const TriangleMesh& mesh, const VoxelGrid& grid) {
-    std::vector<Vec3> points(mesh.positions_mm.size());
-    parallel_for(points.size(), 8192,
-                 [&](std::size_t p) { points[p] = (mesh.positions_mm[p] - grid.origin_mm) / grid.voxel_mm; });
-    return points;
-}
-
 }  // namespace
 
 SurfaceVoxels voxelize(const TriangleMesh& mesh, const VoxelizeSettings& settings, const RunControl& run) {
@@ -88,15 +80,16 @@ SurfaceVoxels voxelize(const TriangleMesh& mesh, const VoxelizeSettings& setting
 
     SurfaceVoxels shell;
     shell.grid = make_grid(mesh, settings.resolution);
-    const std::vector<Vec3> grid_points = to_grid(mesh, shell.grid);
+    const GriddedMesh gridded = lay_into_grid(mesh, shell.grid);
     run.checkpoint("voxelize", 0.05);
-    LayeredPatches patches = cut_mesh(mesh.triangles, grid_points, shell.grid.extent, run);
+    LayeredPatches patches = cut_mesh(gridded, shell.grid.extent, run);
     run.checkpoint("voxelize", 0.4);
-    const EntryTriangles triangles = make_entries(mesh.triangles, grid_points, patches, shell, run);
+    const EntryTriangles triangles = make_entries(gridded, patches, shell, run);
     patches = {};
     run.checkpoint("voxelize", 0.7);
     const CellRows rows(shell.grid.extent, shell.coords);
     const Adjacency direct = link_shared_triangles(rows, shell.coords, triangles, run);
+    fill_missing_normals(direct, shell.normals);
     run.checkpoint("voxelize", 0.85);
     shell.adjacency = link_around_common_neighbors(rows, shell.coords, shell.normals, direct, run);
     shell.components = components_by_lowest_triangle(shell.adjacency, triangles);

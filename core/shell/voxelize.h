@@ -19,6 +19,11 @@ struct VoxelizeSettings {
 /// least one triangle, decided by the separating-axis test of \cite akenine2001triangle. A connected
 /// surface gives a shell that is connected over `adjacency`.
 ///
+/// Touch   coordinates are rounded when they are laid into the grid; what comes within 1e-9 voxels of a
+///         cube counts as touching it, so that rounding cannot tear a shell. A face that lies in the
+///         border between two layers selects both.
+/// Grid    the box around the mesh is centred in a grid with a quarter to three quarters of a voxel to
+///         spare at each end, so that outer flat faces run through the middle of a layer.
 /// Sheets  the triangles that meet a cell fall into groups joined by edges that pass through the
 ///         cell; each group is an entry of its own.
 /// Links   two entries in touching cells are adjacent when they share a triangle, or when both are
@@ -26,7 +31,8 @@ struct VoxelizeSettings {
 /// Units   millimetres in; integer voxel coordinates out. The result carries the grid that maps
 ///         between the two, so later stages never ask for the voxel size again.
 /// Normals area-weighted mean over the surface inside the voxel, unit length. Where the patches
-///         cancel (a wall thinner than one voxel, joined at its rim) the largest patch decides.
+///         cancel (a wall thinner than one voxel, joined at its rim) the larger side decides; where no
+///         triangle has an area, the entries around do.
 /// Order   see SurfaceVoxels. Coordinates do not depend on the order of the triangles.
 /// Cost    time grows with the voxels inside the triangles' bounding boxes; memory with the result.
 ///

@@ -24,9 +24,18 @@ Corners random_triangle(std::uint64_t seed, std::uint32_t item, double low, doub
     return t;
 }
 
+Vec3 normal_of(const Corners& t) {
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    return n.norm() > 0.0 ? Vec3(n.normalized()) : Vec3::Zero();
+}
+
 std::vector<Patch> cut(const Corners& triangle, const VoxelCoord& extent) {
+    TriangleMesh mesh;
+    mesh.positions_mm.assign(triangle.begin(), triangle.end());
+    mesh.triangles = {{0, 1, 2}};
+    const VoxelGrid grid = {Vec3::Zero(), 1.0, extent};
     std::vector<Patch> patches;
-    cut_triangle(triangle, 0, extent, 0, extent[2], patches, {});
+    cut_triangle(lay_into_grid(mesh, grid), 0, extent, 0, extent[2], patches, {});
     return patches;
 }
 
@@ -135,7 +144,7 @@ TEST_CASE("cut_triangle: the closest point of a patch lies on the triangle, in t
     const VoxelCoord extent = {6, 6, 6};
     for (std::uint32_t item = 0; item < 40; ++item) {
         const Corners t = random_triangle(7, item, 0.3, 5.7);
-        const Vec3 normal = triangle_normal(t);
+        const Vec3 normal = normal_of(t);
         for (const Patch& patch : cut(t, extent)) {
             CAPTURE(item, patch.row_x, patch.z);
             const Vec3 center = center_of(cell_of(patch, extent[0]));

@@ -1,5 +1,6 @@
 #include "core/shell/voxelize.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/shell/components.h"
+#include "core/shell/triangle_cells.h"
 #include "support/make_meshes.h"
 
 namespace fretwork {
@@ -39,12 +41,29 @@ std::size_t count_mesh_components(const TriangleMesh& mesh) {
     for (std::size_t t = 0; t < group.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k) {
             const auto edge = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+            if (edge.first == edge.second) continue;
             const auto [user, added] = first_user.insert({edge, t});
             if (!added) group[root(t)] = root(user->second);
         }
     std::size_t count = 0;
     for (std::size_t t = 0; t < group.size(); ++t) count += group[t] == t;
     return count;
+}
+
+// Distance to a triangle, which may be degenerate.
+double distance_to(const TriangleMesh& mesh, const Triangle& triangle, const Vec3& p) {
+    const Corners c = {mesh.positions_mm[triangle[0]], mesh.positions_mm[triangle[1]], mesh.positions_mm[triangle[2]]};
+    const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
+    double best = std::numeric_limits<double>::infinity();
+    bool inside = n.norm() > 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& a = c[k];
+        const Vec3 ab = c[(k + 1) % 3] - a;
+        const double t = ab.squaredNorm() > 0.0 ? std::clamp(ab.dot(p - a) / ab.squaredNorm(), 0.0, 1.0) : 0.0;
+        best = std::min(best, (p - a - t * ab).norm());
+        inside = inside && n.dot(ab.cross(p - a)) >= 0.0;
+    }
+    return inside ? std::abs(n.normalized().dot(p - c[0])) : best;
 }
 
 struct NamedMesh {
@@ -69,6 +88,38 @@ std::vector<NamedMesh> assorted_meshes() {
             {"degenerate triangles", with_degenerates(make_icosphere(10, 2), 9)},
             {"duplicate triangles", with_duplicates(make_icosphere(10, 2), 40)},
             {"soup", random_soup(3, 30, 20)}};
+}
+
+TEST_CASE("voxelize: every entry has a unit normal, a point in its cell and a triangle that holds the point",
+          "[shell][property]") {
+    for (const auto& [name, mesh] : assorted_meshes()) {
+        CAPTURE(name);
+        const SurfaceVoxels shell = voxelize(mesh, {.resolution = 30});
+        for (std::size_t v = 0; v < shell.size(); ++v) {
+            REQUIRE(std::abs(shell.normals[v].norm() - 1.0F) < 1e-5F);
+            const Vec3 in_cell = (shell.points_mm[v] - shell.grid.center_mm(shell.coords[v])) / shell.grid.voxel_mm;
+            REQUIRE(in_cell.cwiseAbs().maxCoeff() < 0.5 + 1e-6);
+            REQUIRE(distance_to(mesh, mesh.triangles[shell.triangles[v]], shell.points_mm[v]) <
+                    1e-6 * shell.grid.voxel_mm + 1e-12);
+        }
+    }
+}
+
+TEST_CASE("voxelize: degenerate triangles take their normal from what is around them", "[shell]") {
+    // A whisker without area on the rim of a square: a chain of cells outward from it.
+    TriangleMesh mesh = make_square(8.0);
+    mesh.positions_mm.emplace_back(16, 0, 0);
+    mesh.triangles.push_back({0, 1, static_cast<std::uint32_t>(mesh.positions_mm.size() - 1)});
+    REQUIRE(mesh.positions_mm[0] == Vec3(0, 0, 0));
+    REQUIRE(mesh.positions_mm[1] == Vec3(8, 0, 0));
+    const SurfaceVoxels shell = voxelize(mesh, {.resolution = 16});
+    CHECK(shell.coords[16] == VoxelCoord{16, 0, 0});
+    for (const Vec3f& n : shell.normals) CHECK(n == Vec3f(0, 0, 1));
+    // Nothing around at all: a segment.
+    mesh.triangles = {{0, 1, 1}};
+    const SurfaceVoxels segment = voxelize(mesh, {.resolution = 16});
+    CHECK(segment.size() == 17);
+    for (const Vec3f& n : segment.normals) CHECK(n == Vec3f(0, 0, 1));
 }
 
 TEST_CASE("voxelize: a flat square becomes one layer", "[shell]") {
