@@ -97,6 +97,11 @@ class ModelReader::Handler : public XmlHandler {
             case Within::kMesh:
                 check_triangles();
                 break;
+            case Within::kImageStack:
+                if (image_->sheets.size() != sheets_wanted_)
+                    xml_.fail(std::to_string(image_->sheets.size()) + " sheets",
+                              "the " + std::to_string(sheets_wanted_) + " announced");
+                break;
             default:
                 break;
         }
