@@ -26,7 +26,7 @@ Point point(const TriangleMesh& mesh, std::uint32_t v) {
 /// Decides one pair. Corners are rotated so that what is shared comes first.
 class PairTest {
   public:
-    explicit PairTest(const TriangleMesh& mesh) : mesh_(mesh) {}
+    PairTest(const TriangleMesh& mesh, JoinedBy joined) : mesh_(mesh), joined_(joined) {}
 
     [[nodiscard]] bool operator()(const Pair& pair) const {
         const Triangle &s = mesh_.triangles[pair.first], &t = mesh_.triangles[pair.second];
@@ -34,7 +34,7 @@ class PairTest {
         std::size_t in_s[3]{}, in_t[3]{};
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t j = 0; j < 3; ++j)
-                if (s[i] == t[j] && shared < 3) in_s[shared] = i, in_t[shared] = j, ++shared;
+                if (same(s[i], t[j]) && shared < 3) in_s[shared] = i, in_t[shared] = j, ++shared;
         switch (shared) {
             case 0:
                 return CGAL::do_intersect(triangle(s), triangle(t));
@@ -48,6 +48,10 @@ class PairTest {
     }
 
   private:
+    [[nodiscard]] bool same(std::uint32_t v, std::uint32_t w) const {
+        return v == w || (joined_ == JoinedBy::kPosition && mesh_.positions_mm[v] == mesh_.positions_mm[w]);
+    }
+
     [[nodiscard]] Kernel::Triangle_3 triangle(const Triangle& t) const {
         return {point(mesh_, t[0]), point(mesh_, t[1]), point(mesh_, t[2])};
     }
@@ -67,6 +71,7 @@ class PairTest {
     }
 
     const TriangleMesh& mesh_;
+    JoinedBy joined_;
 };
 
 std::vector<TriangleBox> boxes_of(const TriangleMesh& mesh) {
@@ -82,10 +87,10 @@ std::vector<TriangleBox> boxes_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::vector<Pair> find_self_intersections(const TriangleMesh& mesh, const RunControl& run) {
+std::vector<Pair> find_self_intersections(const TriangleMesh& mesh, const RunControl& run, JoinedBy joined) {
     std::vector<TriangleBox> boxes = boxes_of(mesh);
     std::vector<Pair> candidates, found;
-    const PairTest meets(mesh);
+    const PairTest meets(mesh, joined);
     // Candidates come from one thread, in batches that are decided by all.
     const auto decide = [&] {
         std::vector<std::uint8_t> yes(candidates.size());

@@ -10,12 +10,19 @@
 
 namespace fretwork {
 
-/// All pairs (lower, higher) of triangles that meet anywhere but in the vertices and edge they share by index, decided
-/// with exact predicates; ascending. Triangles that fold back onto each other over a shared edge are a pair, and so
-/// are triangles that merely touch without sharing vertices. Triangles of exactly zero area are left out.
+/// When two triangles count as joined at a vertex, so that meeting there is no intersection.
+enum class JoinedBy {
+    kIndex,  ///< they name the same vertex; sheets that touch in copies of a vertex intersect. For what is delivered.
+    kPosition,  ///< their vertices are at the same place. For what came in, soups and repaired meshes alike.
+};
+
+/// All pairs (lower, higher) of triangles that meet anywhere but in the vertex or edge they share, decided with exact
+/// predicates; ascending. Triangles that fold back onto each other over a shared edge are a pair, and so are triangles
+/// that merely touch. Triangles of exactly zero area are left out.
 /// Cost  about 5 s for 2 million triangles.
 /// \param run  a stop is honoured
 std::vector<std::pair<std::uint32_t, std::uint32_t>> find_self_intersections(const TriangleMesh& mesh,
-                                                                             const RunControl& run = {});
+                                                                             const RunControl& run = {},
+                                                                             JoinedBy joined = JoinedBy::kIndex);
 
 }  // namespace fretwork
