@@ -9,7 +9,7 @@
 namespace fretwork {
 
 std::vector<Vec3f> filter_light(const std::vector<LightPixel>& pixels, int width, int height, float pixel_tangent) {
-    constexpr int kReach = 3;
+    constexpr int kReach = 4;
     std::vector<Vec3f> out(pixels.size());
     parallel_for(static_cast<std::size_t>(height), 8, [&](std::size_t row) {
         const int y = static_cast<int>(row);

@@ -14,7 +14,7 @@ struct LightPixel {
     float depth = 0;               ///< mean distance from the eye
 };
 
-/// Replaces `light` by a weighted mean over 7 x 7 pixels; neighbours count the less, the more their normal turns away
+/// Replaces `light` by a weighted mean over 9 x 9 pixels; neighbours count the less, the more their normal turns away
 /// and the farther they lie from this pixel's tangent plane. Pixels that met nothing stay as they are.
 /// \param pixel_tangent  width of a pixel over its distance
 std::vector<Vec3f> filter_light(const std::vector<LightPixel>& pixels, int width, int height, float pixel_tangent);

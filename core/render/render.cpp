@@ -81,23 +81,50 @@ Vec3f expose(const Vec3f& radiance) {
     return radiance * (rolled / peak);
 }
 
+/// The model lies within a circle of radius 1 around the origin; its shadow on the floor fades from here to there.
+constexpr float kFloorFades = 1.8f, kFloorEnds = 3.0f;
+
+/// What one ray from the eye meets.
+struct Surface {
+    enum Kind { kNothing, kFloor, kModel };
+    Kind kind = kNothing;
+    float distance = 0;
+    Vec3f facet = Vec3f::UnitZ();
+    Vec3f normal = Vec3f::UnitZ();
+    Vec3f albedo = Vec3f::Zero();
+};
+
 /// Sums over the samples of one pixel.
 struct PixelSum {
-    Vec3f met = Vec3f::Zero();    ///< shown colour of samples that met model or floor
-    Vec3f open = Vec3f::Zero();   ///< of those that met nothing
-    Vec3f light = Vec3f::Zero();  ///< incoming light of those that met something
+    Vec3f model = Vec3f::Zero();  ///< light sent to the eye by the model
+    Vec3f floor = Vec3f::Zero();  ///< by the floor
+    Vec3f open = Vec3f::Zero();   ///< by the background
+    Vec3f light = Vec3f::Zero();  ///< incoming, of the samples that met model or floor
     Vec3f normal = Vec3f::Zero();
     float depth = 0;
-    int count_met = 0;
+    int count_model = 0;
+    int count_met = 0;  ///< model or floor
+    int count = 0;
 
-    void add(const Vec3f& shown, const Vec3f& incoming, const Vec3f& n, float distance) {
-        met += shown;
+    void add(const Vec3f& incoming, const Surface& seen) {
         light += incoming;
-        normal += n;
-        depth += distance;
+        normal += seen.normal;
+        depth += seen.distance;
         ++count_met;
     }
 };
+
+/// Where the samples of a pixel lie in it: a regular grid, its corners first.
+std::vector<Vec2> sample_places(int per_axis) {
+    std::vector<Vec2> corners, others;
+    for (int s = 0; s < per_axis * per_axis; ++s) {
+        const int i = s % per_axis, j = s / per_axis;
+        const bool corner = (i == 0 || i == per_axis - 1) && (j == 0 || j == per_axis - 1);
+        (corner ? corners : others).emplace_back((i + 0.5) / per_axis, (j + 0.5) / per_axis);
+    }
+    corners.insert(corners.end(), others.begin(), others.end());
+    return corners;
+}
 
 class Picture {
   public:
@@ -109,6 +136,7 @@ class Picture {
           normals_(corner_normals(mesh, settings.crease_angle_deg)),
           colors_(colors),
           lighting_(scene_, camera_, settings.shadows),
+          places_(sample_places(settings.samples_per_axis)),
           eye_(scene_.to_scene(camera_.eye_mm()).cast<float>()),
           material_(linear(settings.material)),
           top_(linear(settings.background_top)),
@@ -134,18 +162,11 @@ class Picture {
     [[nodiscard]] std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(settings_.width) + static_cast<std::size_t>(x);
     }
-    /// The light found by the previous sample of a pixel, for the next one to use if it meets the same surface.
-    struct Found {
-        Incoming in;
-        Vec3f normal = Vec3f::Zero();
-        float distance = -1;
-    };
-
     void draw_pixel(int x, int y);
-    void shade_model(const RayScene::Hit& hit, const Vec3f& direction, const SampleSequence& random, int sample,
-                     Found& last, PixelSum& sum) const;
-    bool shade_floor(const Vec3f& direction, const Vec3f& background, const SampleSequence& random, int sample,
-                     Found& last, PixelSum& sum) const;
+    [[nodiscard]] Surface look(const Vec3f& direction) const;
+    void add_light(const Surface& seen, const Vec3f& direction, const Vec3f& background, const SampleSequence& random,
+                   int sample, PixelSum& sum) const;
+    [[nodiscard]] bool alike(const Surface& a, const Surface& b) const;
 
     const RenderSettings& settings_;
     Camera camera_;
@@ -153,6 +174,7 @@ class Picture {
     std::vector<std::array<Vec3f, 3>> normals_;
     std::span<const Rgb8> colors_;
     Lighting lighting_;
+    std::vector<Vec2> places_;
     Vec3f eye_;
     Vec3f material_, top_, bottom_;
     std::array<float, 256> linear_{};
@@ -162,61 +184,73 @@ class Picture {
 };
 
 void Picture::draw_pixel(int x, int y) {
-    const int n = settings_.samples_per_axis;
     const SampleSequence random(index(x, y));
     PixelSum& sum = pixels_[index(x, y)];
-    Found on_model, on_floor;
-    for (int s = 0; s < n * n; ++s) {
-        const Vec2 at(x + (s % n + 0.5) / n, y + (s / n + 0.5) / n);
+    Surface first;
+    bool uniform = true;
+    for (std::size_t s = 0; s < places_.size(); ++s) {
+        // The first four samples lie in the corners; where they agree, the rest would as well.
+        constexpr std::size_t kCorners = 4;
+        if (s == kCorners && uniform) return;
+        const Vec2 at = Vec2(x, y) + places_[s];
         const Vec3f direction = camera_.direction(at).cast<float>();
         const float down = static_cast<float>(at.y()) / static_cast<float>(settings_.height);
-        const Vec3f background = top_ + down * (bottom_ - top_);
-        if (const auto hit = scene_.first_hit(eye_, direction))
-            shade_model(*hit, direction, random, s, on_model, sum);
-        else if (!shade_floor(direction, background, random, s, on_floor, sum))
-            sum.open += background;
+        const Surface seen = look(direction);
+        add_light(seen, direction, top_ + down * (bottom_ - top_), random, static_cast<int>(s), sum);
+        if (s == 0) first = seen;
+        uniform = uniform && alike(first, seen);
     }
 }
 
-void Picture::shade_model(const RayScene::Hit& hit, const Vec3f& direction, const SampleSequence& random, int sample,
-                          Found& last, PixelSum& sum) const {
-    const std::array<Vec3f, 3>& corner = normals_[hit.triangle];
-    Vec3f normal = (1 - hit.u - hit.v) * corner[0] + hit.u * corner[1] + hit.v * corner[2];
-    if (normal.dot(hit.facet_normal) < 0) normal = -normal;
-    const float length = normal.norm();
-    normal = length > 0 ? Vec3f(normal / length) : hit.facet_normal;
-    Vec3f albedo = material_;
-    if (!colors_.empty()) {
-        const Rgb8& c = colors_[hit.triangle];
-        albedo = Vec3f(linear_[c[0]], linear_[c[1]], linear_[c[2]]);
+Surface Picture::look(const Vec3f& direction) const {
+    Surface seen;
+    if (const auto hit = scene_.first_hit(eye_, direction)) {
+        const std::array<Vec3f, 3>& corner = normals_[hit->triangle];
+        Vec3f normal = (1 - hit->u - hit->v) * corner[0] + hit->u * corner[1] + hit->v * corner[2];
+        if (normal.dot(hit->facet_normal) < 0) normal = -normal;
+        const float length = normal.norm();
+        seen.kind = Surface::kModel;
+        seen.distance = hit->distance;
+        seen.facet = hit->facet_normal;
+        seen.normal = length > 0 ? Vec3f(normal / length) : hit->facet_normal;
+        seen.albedo = material_;
+        if (!colors_.empty()) {
+            const Rgb8& c = colors_[hit->triangle];
+            seen.albedo = Vec3f(linear_[c[0]], linear_[c[1]], linear_[c[2]]);
+        }
+    } else if (settings_.floor && direction.z() < 0 && eye_.z() > floor_z_) {
+        seen.distance = (floor_z_ - eye_.z()) / direction.z();
+        const Vec3f point = eye_ + seen.distance * direction;
+        if (std::hypot(point.x(), point.y()) < kFloorEnds) seen.kind = Surface::kFloor;
     }
-    // Light changes little within a pixel on one surface, and rays to the lights cost most: every second sample reuses
-    // what the one before found.
-    const bool same_surface =
-        std::abs(hit.distance - last.distance) < 4 * pixel_tangent_ * hit.distance && normal.dot(last.normal) > 0.98f;
-    if (sample % 2 == 0 || !same_surface)
-        last = {
-            lighting_.on_model(eye_ + hit.distance * direction, hit.facet_normal, normal, -direction, random, sample),
-            normal, hit.distance};
-    const Vec3f shown = expose(albedo.cwiseProduct(last.in.diffuse) + Vec3f::Constant(last.in.gloss));
-    sum.add(shown, last.in.diffuse, normal, hit.distance);
+    return seen;
 }
 
-bool Picture::shade_floor(const Vec3f& direction, const Vec3f& background, const SampleSequence& random, int sample,
-                          Found& last, PixelSum& sum) const {
-    if (!settings_.floor || direction.z() >= 0 || eye_.z() <= floor_z_) return false;
-    const float distance = (floor_z_ - eye_.z()) / direction.z();
-    const Vec3f point = eye_ + distance * direction;
-    // The model lies within a circle of radius 1; its shadow fades out where it would be too faint to see.
-    constexpr float kFadeFrom = 1.8f, kFadeTo = 3.0f;
-    const float away = std::hypot(point.x(), point.y());
-    if (away >= kFadeTo) return false;
-    const float fade = std::clamp((kFadeTo - away) / (kFadeTo - kFadeFrom), 0.0f, 1.0f);
-    if (sample % 2 == 0 || last.distance < 0)
-        last = {{Vec3f::Constant(lighting_.on_floor(point, random, sample)), 0.0f}, Vec3f::UnitZ(), distance};
-    const float light = 1 - fade * (1 - last.in.diffuse.x());
-    sum.add(background * light, Vec3f::Constant(light), Vec3f::UnitZ(), distance);
-    return true;
+void Picture::add_light(const Surface& seen, const Vec3f& direction, const Vec3f& background,
+                        const SampleSequence& random, int sample, PixelSum& sum) const {
+    const Vec3f point = eye_ + seen.distance * direction;
+    ++sum.count;
+    if (seen.kind == Surface::kNothing) {
+        sum.open += background;
+    } else if (seen.kind == Surface::kFloor) {
+        const float away = std::hypot(point.x(), point.y());
+        const float fade = std::clamp((kFloorEnds - away) / (kFloorEnds - kFloorFades), 0.0f, 1.0f);
+        const float light = 1 - fade * (1 - lighting_.on_floor(point, random, sample));
+        sum.floor += background * light;
+        sum.add(Vec3f::Constant(light), seen);
+    } else {
+        const Incoming in = lighting_.on_model(point, seen.facet, seen.normal, -direction, random, sample);
+        sum.model += seen.albedo.cwiseProduct(in.diffuse) + Vec3f::Constant(in.gloss);
+        ++sum.count_model;
+        sum.add(in.diffuse, seen);
+    }
+}
+
+bool Picture::alike(const Surface& a, const Surface& b) const {
+    if (a.kind != b.kind) return false;
+    if (a.kind != Surface::kModel) return true;
+    return a.normal.dot(b.normal) > 0.97f && (a.albedo - b.albedo).cwiseAbs().maxCoeff() < 0.01f &&
+           std::abs(a.distance - b.distance) < 6 * pixel_tangent_ * a.distance;
 }
 
 Image Picture::finish() const {
@@ -231,11 +265,13 @@ Image Picture::finish() const {
 
     Image out{settings_.width, settings_.height, {}, false};
     out.pixels.resize(pixels_.size());
-    const float share = 1.0f / static_cast<float>(settings_.samples_per_axis * settings_.samples_per_axis);
     parallel_for(pixels_.size(), 4096, [&](std::size_t i) {
         // The picture times the ratio of smooth to grainy light: colours keep their edges.
         const Vec3f ratio = smooth[i].array() / (light[i].light.array() + 1e-6f);
-        const Vec3f c = share * (pixels_[i].open + pixels_[i].met.cwiseProduct(ratio));
+        const PixelSum& p = pixels_[i];
+        const auto models = static_cast<float>(std::max(p.count_model, 1));
+        const Vec3f model = models * expose(p.model.cwiseProduct(ratio) / models);
+        const Vec3f c = (p.open + p.floor.cwiseProduct(ratio) + model) / static_cast<float>(p.count);
         out.pixels[i] = {to_byte(linear_to_srgb(c.x())), to_byte(linear_to_srgb(c.y())), to_byte(linear_to_srgb(c.z())),
                          255};
     });

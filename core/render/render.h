@@ -18,9 +18,9 @@ struct RenderSettings {
     double zoom = 1.0;            ///< 1 frames the whole model, 2 shows half of that width; [0.01, 1000]
     std::optional<Vec3> look_at_mm = std::nullopt;  ///< in the middle of the picture; empty: the middle of the model
     double field_of_view_deg = 24.0;                ///< (0, 120]; small values flatten perspective
-    int samples_per_axis = 3;                       ///< anti-aliasing: squared rays per pixel, [1, 16]
-    bool shadows = true;                            ///< soft key light and ambient occlusion
-    double crease_angle_deg = 40.0;                 ///< facets that meet at less look smooth; 0 shows every facet
+    int samples_per_axis = 3;        ///< anti-aliasing: squared rays per pixel where it shows an edge, [1, 16]
+    bool shadows = true;             ///< soft key light and ambient occlusion
+    double crease_angle_deg = 40.0;  ///< facets that meet at less look smooth; 0 shows every facet
     Rgb8 background_top = {236, 240, 244};
     Rgb8 background_bottom = {190, 198, 208};
     Rgb8 material = {214, 205, 190};  ///< where no colour is given
