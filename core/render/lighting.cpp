@@ -28,7 +28,7 @@ Vec3f sky(const Vec3f& direction) {
                   : Vec3f(kHorizon - std::min(1.0f, -4 * z) * (kHorizon - kGround));
 }
 
-/// Two unit vectors that make a frame with `n`, without a branch that jumps (Duff et al. 2017).
+/// Two unit vectors that make a frame with `n`, without a branch that jumps \cite duff2017frame.
 void make_frame(const Vec3f& n, Vec3f& a, Vec3f& b) {
     const float sign = std::copysign(1.0f, n.z());
     const float p = -1.0f / (sign + n.z());

@@ -32,8 +32,8 @@ struct PatternPictures {
     Image mask;
 };
 
-/// Draws a pattern; the same pixels on every call and for any number of threads. Takes some tens of
-/// milliseconds.
+/// Draws a pattern; the same pixels on every call and for any number of threads. Takes up to half a second of
+/// CPU.
 /// \throws InvalidSetting  unknown name
 [[nodiscard]] PatternPictures draw_builtin(std::string_view name);
 

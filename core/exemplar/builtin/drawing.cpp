@@ -1,6 +1,7 @@
 #include "core/exemplar/builtin/drawing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -13,11 +14,32 @@
 namespace fretwork::drawing {
 namespace {
 
-constexpr int kSamplesPerAxis = 3;
+struct Pixel {
+    Ink color;
+    float cover;
+};
 
-Rgba8 to_pixel(const Ink& sum, float scale) {
-    return {to_byte(linear_to_srgb(sum.r * scale)), to_byte(linear_to_srgb(sum.g * scale)),
-            to_byte(linear_to_srgb(sum.b * scale)), 255};
+Rgba8 encode(const Ink& c) {
+    return {to_byte(linear_to_srgb(c.r)), to_byte(linear_to_srgb(c.g)), to_byte(linear_to_srgb(c.b)), 255};
+}
+
+bool is_close(const Ink& a, const Ink& b) {
+    constexpr float kStep = 0.04f;
+    return std::abs(a.r - b.r) < kStep && std::abs(a.g - b.g) < kStep && std::abs(a.b - b.b) < kStep;
+}
+
+Pixel sample_pixel(double x, double y, const std::function<Sample(const Vec2&)>& look) {
+    constexpr int kPerAxis = 3;
+    constexpr float kShare = 1.0f / (kPerAxis * kPerAxis);
+    Pixel sum{{0, 0, 0}, 0};
+    for (int s = 0; s < kPerAxis * kPerAxis; ++s) {
+        const Sample one = look({x + (s % kPerAxis + 0.5) / kPerAxis, y + (s / kPerAxis + 0.5) / kPerAxis});
+        sum.color = {sum.color.r + kShare * one.color.r, sum.color.g + kShare * one.color.g,
+                     sum.color.b + kShare * one.color.b};
+        // A sample stands for a square of 1 / kPerAxis px that the border may cut.
+        sum.cover += kShare * static_cast<float>(std::clamp(0.5 - one.distance * kPerAxis, 0.0, 1.0));
+    }
+    return sum;
 }
 
 }  // namespace
@@ -41,32 +63,40 @@ Sample shade(double distance, const Relief& relief) {
 }
 
 Vec2 Torus::shortest(Vec2 way) const {
-    way.x() -= width * std::floor(way.x() / width + 0.5);
-    way.y() -= height * std::floor(way.y() / height + 0.5);
-    return way;
+    // Points lie within a picture or two of each other: a step or two beats a division.
+    const auto fold = [](double x, double period) {
+        while (x >= period / 2) x -= period;
+        while (x < -period / 2) x += period;
+        return x;
+    };
+    return {fold(way.x(), width), fold(way.y(), height)};
 }
 
 PatternPictures draw(int width_px, int height_px, const std::function<Sample(const Vec2&)>& look) {
+    const auto width = static_cast<std::size_t>(width_px), height = static_cast<std::size_t>(height_px);
+    std::vector<Sample> middle(width * height);
+    parallel_for(height, 4, [&](std::size_t y) {
+        for (std::size_t x = 0; x < width; ++x)
+            middle[y * width + x] = look({static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5});
+    });
+
     PatternPictures out;
     out.color = {width_px, height_px, {}, false};
-    out.color.pixels.resize(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
+    out.color.pixels.resize(middle.size());
     out.mask = out.color;
-    parallel_for(static_cast<std::size_t>(height_px), 4, [&](std::size_t row) {
-        for (int x = 0; x < width_px; ++x) {
-            Ink sum{0, 0, 0};
-            double cover = 0;
-            for (int s = 0; s < kSamplesPerAxis * kSamplesPerAxis; ++s) {
-                const double dx = (s % kSamplesPerAxis + 0.5) / kSamplesPerAxis;
-                const double dy = (s / kSamplesPerAxis + 0.5) / kSamplesPerAxis;
-                const Sample sample = look({x + dx, static_cast<double>(row) + dy});
-                sum = {sum.r + sample.color.r, sum.g + sample.color.g, sum.b + sample.color.b};
-                // A sample stands for a square of 1 / kSamplesPerAxis px that the border may cut.
-                cover += std::clamp(0.5 - sample.distance * kSamplesPerAxis, 0.0, 1.0);
-            }
-            constexpr float kShare = 1.0f / (kSamplesPerAxis * kSamplesPerAxis);
-            const std::size_t i = row * static_cast<std::size_t>(width_px) + static_cast<std::size_t>(x);
-            out.color.pixels[i] = to_pixel(sum, kShare);
-            const std::uint8_t grey = to_byte(static_cast<float>(cover) * kShare);
+    parallel_for(height, 4, [&](std::size_t y) {
+        for (std::size_t x = 0; x < width; ++x) {
+            const std::size_t i = y * width + x;
+            const std::array<const Sample*, 4> around = {
+                &middle[y * width + (x + 1) % width], &middle[y * width + (x + width - 1) % width],
+                &middle[(y + 1) % height * width + x], &middle[(y + height - 1) % height * width + x]};
+            const bool plain = std::abs(middle[i].distance) > 2.0 && std::ranges::all_of(around, [&](const Sample* s) {
+                                   return is_close(s->color, middle[i].color);
+                               });
+            const Pixel pixel = plain ? Pixel{middle[i].color, middle[i].distance < 0 ? 1.0f : 0.0f}
+                                      : sample_pixel(static_cast<double>(x), static_cast<double>(y), look);
+            out.color.pixels[i] = encode(pixel.color);
+            const std::uint8_t grey = to_byte(pixel.cover);
             out.mask.pixels[i] = {grey, grey, grey, 255};
         }
     });

@@ -43,7 +43,8 @@ struct Torus {
     [[nodiscard]] Vec2 shortest(Vec2 way) const;
 };
 
-/// Averages 3 x 3 samples per pixel. `look` is called from several threads.
+/// One sample per pixel inside a phase, the mean of 3 x 3 near the border and where colours change quickly. `look` is
+/// called from several threads.
 PatternPictures draw(int width_px, int height_px, const std::function<Sample(const Vec2&)>& look);
 
 // ---- distances, px; negative inside ------------------------------------------------------------
