@@ -14,6 +14,7 @@
 #include "core/solidify/marching_tets.h"
 #include "core/solidify/sharpen.h"
 #include "core/solidify/shell_index.h"
+#include "core/solidify/simplify.h"
 #include "core/solidify/wall_field.h"
 #include "core/solidify/wall_lattice.h"
 
@@ -107,6 +108,28 @@ void paint(const SurfaceVoxels& shell, const WallField& field, const PatternFiel
     });
 }
 
+std::vector<Rgb8> vertex_colors(const WallMesh& wall, const WallField& field, const PatternField& pattern,
+                                const RunControl& run) {
+    std::vector<Rgb8> colors(wall.vertices.size());
+    parallel_chunks(colors.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        run.throw_if_stopped();
+        for (std::size_t v = begin; v < end; ++v) {
+            const std::uint32_t triangle = wall.vertices[v].triangle;
+            colors[v] = pattern.color(field.closest_on(triangle, wall.vertices[v].position_mm), triangle);
+        }
+    });
+    return colors;
+}
+
+SimplifySettings simplify_settings(const SolidifySettings& settings, double voxel_mm) {
+    SimplifySettings simplify;
+    // A target without a tolerance starts from the smallest one that does anything.
+    simplify.tolerance_mm = std::max(settings.simplify_tolerance_voxels, 0.01) * voxel_mm;
+    simplify.target_triangles = settings.target_triangles;
+    simplify.block_mm = 24.0 * voxel_mm;
+    return simplify;
+}
+
 }  // namespace
 
 CarvedMesh solidify(const TriangleMesh& mesh, const SurfaceVoxels& shell, const PatternField& pattern,
@@ -133,6 +156,10 @@ CarvedMesh solidify(const TriangleMesh& mesh, const SurfaceVoxels& shell, const 
     if (carved.mesh.triangles.empty())
         throw ConstraintsNotMet("solidify: no material is left; the pattern is empty everywhere");
     run.checkpoint(kStage, 0.7);
+    if (settings.simplify_tolerance_voxels > 0.0 || settings.target_triangles > 0)
+        carved.mesh = simplify(carved.mesh, vertex_colors(wall, field, pattern, run),
+                               simplify_settings(settings, shell.grid.voxel_mm), run);
+    run.checkpoint(kStage, 0.9);
     paint(shell, field, pattern, carved, run);
     run.checkpoint(kStage, 1.0);
     return carved;

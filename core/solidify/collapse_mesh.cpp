@@ -1,0 +1,107 @@
+#include "core/solidify/collapse_mesh.h"
+
+#include <algorithm>
+
+namespace fretwork {
+
+CollapseMesh::CollapseMesh(const TriangleMesh& mesh)
+    : positions_(mesh.positions_mm),
+      triangles_(mesh.triangles),
+      across_(3 * mesh.triangles.size(), kNone),
+      corner_of_(mesh.positions_mm.size(), kNone) {
+    struct Side {
+        std::uint64_t edge;
+        Corner facing;
+    };
+    std::vector<Side> sides(across_.size());
+    for (Corner c = 0; c < across_.size(); ++c) {
+        const std::uint64_t a = vertex(next(c)), b = vertex(previous(c));
+        sides[c] = {(std::min(a, b) << 32) | std::max(a, b), c};
+        corner_of_[vertex(c)] = c;
+    }
+    std::sort(sides.begin(), sides.end(),
+              [](const Side& s, const Side& t) { return s.edge != t.edge ? s.edge < t.edge : s.facing < t.facing; });
+    for (std::size_t i = 0; i + 1 < sides.size(); i += 2) link(sides[i].facing, sides[i + 1].facing);
+}
+
+void CollapseMesh::link(Corner a, Corner b) {
+    across_[a] = b;
+    across_[b] = a;
+}
+
+void CollapseMesh::corners_around(std::uint32_t v, std::vector<Corner>& corners) const {
+    corners.clear();
+    const Corner start = corner_of_[v];
+    Corner c = start;
+    do {
+        corners.push_back(c);
+        // Over the edge from v to the previous corner's vertex, which next(c) faces.
+        c = next(across_[next(c)]);
+    } while (c != start);
+}
+
+bool CollapseMesh::degree_at_least_four(Corner c) const {
+    Corner d = c;
+    for (int k = 0; k < 3; ++k) {
+        d = next(across_[next(d)]);
+        if (d == c) return false;
+    }
+    return true;
+}
+
+bool CollapseMesh::may_collapse(const std::vector<Corner>& around_u, Corner edge) const {
+    if (around_u.size() < 3) return false;
+    const std::uint32_t apex_a = vertex(previous(edge));
+    const Corner other = across_[previous(edge)];  // faces the edge from the other side
+    const std::uint32_t apex_b = vertex(other);
+    if (apex_a == apex_b) return false;
+    if (!degree_at_least_four(previous(edge)) || !degree_at_least_four(other)) return false;
+    // Common neighbours of u and v.
+    const Corner at_v = next(edge);
+    Corner c = at_v;
+    do {
+        const std::uint32_t w = vertex(next(c));
+        if (w != apex_a && w != apex_b)
+            for (const Corner d : around_u)
+                if (vertex(next(d)) == w) return false;
+        c = next(across_[next(c)]);
+    } while (c != at_v);
+    return true;
+}
+
+void CollapseMesh::collapse(const std::vector<Corner>& around_u, Corner edge) {
+    const std::uint32_t u = vertex(edge), v = vertex(next(edge));
+    const Corner other = across_[previous(edge)];
+    const std::uint32_t dead_a = edge / 3, dead_b = other / 3;
+    // Outer neighbours of the two dying triangles, across the sides that stay: for each, the side at u and the one at v
+    // become one.
+    const Corner a_at_u = across_[next(edge)], a_at_v = across_[edge];
+    const Corner b_u = vertex(next(other)) == u ? next(other) : previous(other);
+    const Corner b_v = vertex(next(other)) == u ? previous(other) : next(other);
+    const Corner b_at_u = across_[b_v], b_at_v = across_[b_u];
+    for (const Corner c : around_u)
+        if (c / 3 != dead_a && c / 3 != dead_b) triangles_[c / 3][c % 3] = v;
+    triangles_[dead_a] = triangles_[dead_b] = {kNone, kNone, kNone};
+    link(a_at_u, a_at_v);
+    link(b_at_u, b_at_v);
+    corner_of_[u] = kNone;
+    // A corner that faces the merged side has its ends next to it.
+    for (const Corner c : {a_at_u, b_at_u})
+        for (const Corner end : {next(c), previous(c)}) corner_of_[vertex(end)] = end;
+}
+
+TriangleMesh CollapseMesh::extract() const {
+    TriangleMesh mesh;
+    std::vector<std::uint32_t> number(positions_.size(), kNone);
+    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
+        if (!alive(v)) continue;
+        number[v] = static_cast<std::uint32_t>(mesh.positions_mm.size());
+        mesh.positions_mm.push_back(positions_[v]);
+    }
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+        if (triangle_alive(t))
+            mesh.triangles.push_back({number[triangles_[t][0]], number[triangles_[t][1]], number[triangles_[t][2]]});
+    return mesh;
+}
+
+}  // namespace fretwork
