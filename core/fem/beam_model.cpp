@@ -8,10 +8,10 @@
 #include "core/base/parallel.h"
 #include "core/fem/beam_elements.h"
 #include "core/fem/beam_wedge_mesh.h"
+#include "core/fem/beam_widths.h"
 #include "core/fem/equilibrium_solver.h"
 #include "core/fem/sample_loads.h"
 #include "core/fem/stiffness_pattern.h"
-#include "core/graph/pattern_width.h"
 
 namespace fretwork {
 namespace {
@@ -20,13 +20,6 @@ namespace {
 /// within bounds: beyond them the geometry, not the factor, is wrong.
 double width_factor(double pattern_mm, double beam_mm) {
     return std::clamp(pattern_mm / beam_mm, 0.1, 10.0);
-}
-
-/// Half width of the pattern along a path as flexibility sees it: the harmonic mean over the voxels.
-double path_half_width(std::span<const VoxelIndex> path, const std::vector<float>& half_width) {
-    double sum = 0.0;
-    for (const VoxelIndex v : path) sum += 1.0 / std::max(0.5, static_cast<double>(half_width[v]));
-    return static_cast<double>(path.size()) / sum;
 }
 
 /// Load cases with the same supports: one matrix, one column of loads each.
@@ -55,25 +48,19 @@ struct BeamModel::Impl {
     Impl(const AbstractGraph& graph_in, const BeamModelSettings& settings_in)
         : graph(graph_in), settings(settings_in) {}
 
-    void measure_widths(const SurfaceVoxels& shell, const SolidStates& solid);
+    void build_geometry(const SurfaceVoxels& shell, const SolidStates& solid);
     void add_loads(const std::vector<SampleLoads>& cases);
     [[nodiscard]] std::vector<std::uint8_t> fixed_nodes(const SampleLoads& loads) const;
     void take_scores(const Supports& group, const Eigen::MatrixXd& u, std::vector<double>& scores_pa) const;
 };
 
-void BeamModel::Impl::measure_widths(const SurfaceVoxels& shell, const SolidStates& solid) {
-    const std::vector<float> half_width = pattern_half_width(shell.adjacency, solid, settings.widest_half_width_voxels);
-    std::vector<float> at_sample;
-    for (const VoxelIndex v : graph.samples) at_sample.push_back(std::max(0.5f, half_width[v]));
+void BeamModel::Impl::build_geometry(const SurfaceVoxels& shell, const SolidStates& solid) {
+    const BeamWidths widths = beam_widths(shell, solid, graph, settings.bridge_half_width_voxels);
     BeamGeometry geometry;
     geometry.thickness_mm = settings.thickness_mm;
-    mesh = build_beam_wedge_mesh(shell, graph, at_sample, geometry);
-    width_factors.resize(graph.edges.size());
-    for (EdgeIndex e = 0; e < width_factors.size(); ++e) {
-        const double half = graph.edges[e].state == EdgeState::kSolid ? path_half_width(graph.voxel_path(e), half_width)
-                                                                      : settings.bridge_half_width_voxels;
-        width_factors[e] = width_factor(2.0 * half * shell.grid.voxel_mm, mesh.beams[e].width_mm);
-    }
+    mesh = build_beam_wedge_mesh(shell, graph, widths.at_sample_voxels, geometry);
+    for (EdgeIndex e = 0; e < graph.edges.size(); ++e)
+        width_factors.push_back(width_factor(widths.along_edge_mm[e], mesh.beams[e].width_mm));
 }
 
 std::vector<std::uint8_t> BeamModel::Impl::fixed_nodes(const SampleLoads& loads) const {
@@ -116,7 +103,7 @@ BeamModel::BeamModel(const SurfaceVoxels& shell, const SolidStates& solid, const
                      const ForceProfile& profile, const Material& material, const BeamModelSettings& settings,
                      const RunControl& run)
     : impl_(std::make_unique<Impl>(graph, settings)) {
-    impl_->measure_widths(shell, solid);
+    impl_->build_geometry(shell, solid);
     run.throw_if_stopped();
     impl_->elements.emplace(impl_->mesh, material, settings.thickness_mm);
     run.throw_if_stopped();

@@ -14,15 +14,14 @@
 namespace fretwork {
 
 struct BeamModelSettings {
-    double thickness_mm = 2.0;                 ///< final wall
-    double soft_factor = 1e-3;                 ///< rho_min, of empty edges
-    double bridge_half_width_voxels = 3.0;     ///< of an edge that is empty now, once it is solid: r_pattern
-    double widest_half_width_voxels = 1000.0;  ///< bound on the measured width of the pattern
+    double thickness_mm = 2.0;              ///< final wall
+    double soft_factor = 1e-3;              ///< rho_min, of empty edges
+    double bridge_half_width_voxels = 3.0;  ///< of an edge that is empty now, once it is solid: r_pattern
 };
 
 /// Section 5.2.1. Wedges are always solid, beams have stiffness 1 or rho_min times their own. A beam's
-/// own stiffness is that of its hexahedron times the width of the pattern along its path over the
-/// width of the hexahedron, so that thin strands are as weak as they are.
+/// own stiffness is that of its hexahedron times the width of the material it stands for
+/// (`beam_widths.h`) over the width of the hexahedron, so that thin strands are as weak as they are.
 class BeamModel {
   public:
     /// Builds geometry and element matrices, orders the equations. References must outlive the model.

@@ -1,0 +1,24 @@
+// Stage 5b: how wide the material is that each beam stands for.
+#pragma once
+
+#include <vector>
+
+#include "core/graph/abstract_graph.h"
+#include "core/shell/surface_voxels.h"
+
+namespace fretwork {
+
+struct BeamWidths {
+    std::vector<float> at_sample_voxels;  ///< half of the width of the pattern around each sample
+    std::vector<double> along_edge_mm;    ///< width of the material along each edge
+};
+
+/// A solid edge is as wide as the pattern along its path (harmonic mean, as flexibility sees it), but
+/// no wider than 1.5 times the border between the regions of its two samples: where the pattern is
+/// wider than the samples are apart, the edges form a net that shares it. An empty edge is as wide as the bridge that
+/// would be built there.
+/// Cost: one pass over the links.
+BeamWidths beam_widths(const SurfaceVoxels& shell, const SolidStates& solid, const AbstractGraph& graph,
+                       double bridge_half_width_voxels);
+
+}  // namespace fretwork
