@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "formats/atomic_write.h"
+#include "formats/cad_reader.h"
 #include "formats/carved_threemf_writer.h"
 #include "formats/obj_reader.h"
 #include "formats/obj_writer.h"
@@ -22,13 +23,40 @@
 namespace fretwork {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, MeshFormat>, 5> kFormats = {{
+constexpr std::array<std::pair<std::string_view, MeshFormat>, 11> kFormats = {{
     {"stl", MeshFormat::kStl},
     {"obj", MeshFormat::kObj},
     {"ply", MeshFormat::kPly},
     {"off", MeshFormat::kOff},
     {"3mf", MeshFormat::kThreemf},
+    {"step", MeshFormat::kStep},
+    {"stp", MeshFormat::kStep},
+    {"iges", MeshFormat::kIges},
+    {"igs", MeshFormat::kIges},
+    {"brep", MeshFormat::kBrep},
+    {"brp", MeshFormat::kBrep},
 }};
+
+MeshFile read_cad_format(std::string_view bytes, MeshFormat format, std::string_view source, const RunControl& run) {
+#ifdef FRETWORK_STEP
+    const CadFormat cad = format == MeshFormat::kStep   ? CadFormat::kStep
+                          : format == MeshFormat::kIges ? CadFormat::kIges
+                                                        : CadFormat::kBrep;
+    return read_cad(bytes, cad, source, {}, run);
+#else
+    static_cast<void>(bytes);
+    static_cast<void>(format);
+    run.throw_if_stopped();
+    throw InvalidSetting(std::string(source) + ": found a CAD model, expected a mesh: built without OpenCASCADE");
+#endif
+}
+
+std::string write_threemf(const MeshToWrite& input) {
+    CarvedPackage package;
+    package.objects.push_back({input.mesh, input.triangle_colors, std::string(input.name)});
+    package.title = input.name;
+    return write_carved_threemf(package);
+}
 
 }  // namespace
 
@@ -70,10 +98,16 @@ MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view s
         case MeshFormat::kThreemf:
             file = read_threemf(bytes, source, run);
             break;
+        case MeshFormat::kStep:
+        case MeshFormat::kIges:
+        case MeshFormat::kBrep:
+            file = read_cad_format(bytes, format, source, run);
+            break;
     }
     if (file.mesh.triangles.empty())
         fail_parse(source, place_of_byte(bytes.size()), "no triangle in the whole file", "at least one");
-    if (format != MeshFormat::kThreemf && unit != LengthUnit::kMillimeter) {
+    const bool has_unit = format == MeshFormat::kThreemf || format == MeshFormat::kStep || format == MeshFormat::kIges;
+    if (!has_unit && unit != LengthUnit::kMillimeter) {
         file.unit = unit;
         for (Vec3& p : file.mesh.positions_mm) p *= millimeters_per(unit);
     }
@@ -96,12 +130,13 @@ std::string write_mesh(const MeshToWrite& input, MeshFormat format) {
         case MeshFormat::kOff:
             return write_off(input);
         case MeshFormat::kThreemf:
+            return write_threemf(input);
+        case MeshFormat::kStep:
+        case MeshFormat::kIges:
+        case MeshFormat::kBrep:
             break;
     }
-    CarvedPackage package;
-    package.objects.push_back({input.mesh, input.triangle_colors, std::string(input.name)});
-    package.title = input.name;
-    return write_carved_threemf(package);
+    throw InvalidSetting("mesh format: found a CAD format, expected one that holds triangles: stl, obj, ply, off, 3mf");
 }
 
 void write_mesh(const std::filesystem::path& path, const MeshToWrite& input, std::optional<MeshFormat> format) {

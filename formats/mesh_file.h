@@ -13,9 +13,11 @@
 
 namespace fretwork {
 
-enum class MeshFormat { kStl, kObj, kPly, kOff, kThreemf };
+/// STEP, IGES and BREP can be read only, and only by builds with FRETWORK_STEP.
+enum class MeshFormat { kStl, kObj, kPly, kOff, kThreemf, kStep, kIges, kBrep };
 
-/// "stl", "obj", "ply", "off", "3mf"; case and a leading dot do not matter.
+/// "stl", "obj", "ply", "off", "3mf", "step" or "stp", "iges" or "igs", "brep" or "brp"; case and a
+/// leading dot do not matter.
 /// \throws InvalidSetting  naming the known ones.
 MeshFormat mesh_format_from_name(std::string_view name);
 
@@ -24,12 +26,12 @@ MeshFormat mesh_format_from_path(const std::filesystem::path& path);
 
 struct MeshReadOptions {
     std::optional<MeshFormat> format;           ///< empty: from the extension
-    LengthUnit unit = LengthUnit::kMillimeter;  ///< of formats that name none (all but 3MF)
+    LengthUnit unit = LengthUnit::kMillimeter;  ///< of formats that name none (STL, OBJ, PLY, OFF, BREP)
 };
 
 /// Limits: files up to 4 GiB, coordinates up to 1e9 in size.
 /// \throws InvalidInput    naming file, place, found and expected; also for a file without triangles.
-/// \throws InvalidSetting  unknown extension and no format given.
+/// \throws InvalidSetting  unknown extension and no format given; a format this build does not read.
 /// \throws FileError       cannot be opened.
 MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {}, const RunControl& run = {});
 
@@ -38,7 +40,7 @@ MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view s
                    LengthUnit unit = LengthUnit::kMillimeter, const RunControl& run = {});
 
 /// The bytes of the file; the same input always gives the same bytes.
-/// \throws InvalidInput  see check_mesh_to_write.
+/// \throws InvalidInput  see check_mesh_to_write. \throws InvalidSetting  a format that is only read.
 std::string write_mesh(const MeshToWrite& input, MeshFormat format);
 
 /// Whole or not at all (`atomic_write.h`). \throws FileError, InvalidInput

@@ -1,0 +1,170 @@
+#include "formats/cad_reader.h"
+
+#include <BRepBndLib.hxx>
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <IGESControl_Reader.hxx>
+#include <IMeshTools_Parameters.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_PrinterOStream.hxx>
+#include <Poly_Triangulation.hxx>
+#include <STEPControl_Reader.hxx>
+#include <Standard_Failure.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <cmath>
+#include <mutex>
+#include <sstream>
+#include <string>
+
+#include "core/base/error.h"
+#include "formats/parse_error.h"
+#include "formats/weld_equal.h"
+
+namespace fretwork {
+namespace {
+
+/// OpenCASCADE's readers and its messenger are global.
+std::mutex& cad_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+template <class Reader>
+TopoDS_Shape transferred(Reader& reader) {
+    reader.TransferRoots();
+    return reader.OneShape();
+}
+
+/// A null shape when the file cannot be read.
+TopoDS_Shape read_shape(std::string_view bytes, CadFormat format) {
+    std::istringstream stream{std::string(bytes)};
+    if (format == CadFormat::kBrep) {
+        TopoDS_Shape shape;
+        // OpenCASCADE would complain about another header on standard output.
+        if (bytes.substr(0, 4096).find("CASCADE Topology V") == bytes.npos) return shape;
+        const BRep_Builder builder;
+        BRepTools::Read(shape, stream, builder);
+        return shape;
+    }
+    if (format == CadFormat::kStep) {
+        STEPControl_Reader reader;
+        return reader.ReadStream("memory", stream) == IFSelect_RetDone ? transferred(reader) : TopoDS_Shape();
+    }
+    IGESControl_Reader reader;
+    return reader.ReadStream("memory", stream) == IFSelect_RetDone ? transferred(reader) : TopoDS_Shape();
+}
+
+void break_into_triangles(const TopoDS_Shape& shape, const CadMeshing& meshing) {
+    Bnd_Box box;
+    BRepBndLib::Add(shape, box, Standard_False);
+    IMeshTools_Parameters parameters;
+    parameters.Deflection = box.IsVoid() ? 0.1 : meshing.deviation_share * std::sqrt(box.SquareExtent());
+    parameters.Angle = meshing.angle_rad;
+    parameters.InParallel = Standard_False;
+    BRepMesh_IncrementalMesh(shape, parameters);
+}
+
+class FaceCollector {
+  public:
+    explicit FaceCollector(std::string_view source) : source_(source), welder_(1 << 16) {}
+
+    void add_faces(const TopoDS_Shape& within, TopAbs_ShapeEnum but_not_in = TopAbs_SHAPE) {
+        for (TopExp_Explorer face(within, TopAbs_FACE, but_not_in); face.More(); face.Next())
+            add_face(TopoDS::Face(face.Current()));
+    }
+
+    void close_part(const std::string& name) {
+        const auto now = static_cast<std::uint32_t>(file_.mesh.triangles.size());
+        const std::uint32_t first =
+            file_.parts.empty() ? 0 : file_.parts.back().first_triangle + file_.parts.back().triangle_count;
+        if (now > first) file_.parts.push_back({name, first, now - first});
+    }
+
+    MeshFile take() {
+        file_.mesh.positions_mm = welder_.take_positions();
+        return std::move(file_);
+    }
+
+  private:
+    void add_face(const TopoDS_Face& face) {
+        TopLoc_Location location;
+        const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+        ++faces_;
+        if (triangulation.IsNull())
+            fail_parse(source_, "face " + std::to_string(faces_), "a surface that cannot be broken into triangles",
+                       "a sound face");
+        const gp_Trsf& transform = location.Transformation();
+        const bool turned = (face.Orientation() == TopAbs_REVERSED) != transform.IsNegative();
+        for (Standard_Integer t = 1; t <= triangulation->NbTriangles(); ++t) {
+            Standard_Integer node[3];
+            triangulation->Triangle(t).Get(node[0], node[1], node[2]);
+            if (turned) std::swap(node[1], node[2]);
+            Triangle triangle{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const gp_Pnt p = triangulation->Node(node[k]).Transformed(transform);
+                triangle[k] = welder_.index_of(placed(p));
+            }
+            if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
+                file_.mesh.triangles.push_back(triangle);
+        }
+    }
+
+    /// Two faces may differ in the last bits of the points on their common edge; rounded to floats they agree.
+    Vec3 placed(const gp_Pnt& p) const {
+        const Vec3 rounded = Vec3(p.X(), p.Y(), p.Z()).cast<float>().cast<double>();
+        if (!(rounded.cwiseAbs().maxCoeff() <= kMaxCoordinate))
+            fail_parse(source_, "face " + std::to_string(faces_), "a coordinate that is not finite or over 1e9",
+                       "a smaller one");
+        return rounded;
+    }
+
+    std::string_view source_;
+    EqualPointWelder welder_;
+    MeshFile file_;
+    std::size_t faces_ = 0;
+};
+
+MeshFile collect(const TopoDS_Shape& shape, std::string_view source, const RunControl& run) {
+    FaceCollector collector(source);
+    int solids = 0;
+    for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next()) {
+        run.throw_if_stopped();
+        collector.add_faces(solid.Current());
+        collector.close_part("solid " + std::to_string(++solids));
+    }
+    collector.add_faces(shape, TopAbs_SOLID);
+    collector.close_part("loose faces");
+    return collector.take();
+}
+
+}  // namespace
+
+MeshFile read_cad(std::string_view bytes, CadFormat format, std::string_view source, const CadMeshing& meshing,
+                  const RunControl& run) {
+    if (!(meshing.deviation_share > 0.0) || !(meshing.angle_rad > 0.0))
+        throw InvalidSetting("CAD meshing: found deviation " + std::to_string(meshing.deviation_share) + " and angle " +
+                             std::to_string(meshing.angle_rad) + ", expected both above 0");
+    const std::lock_guard lock(cad_mutex());
+    // What OpenCASCADE has to say would go to standard output, where data belongs.
+    Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
+    try {
+        const TopoDS_Shape shape = read_shape(bytes, format);
+        if (shape.IsNull())
+            fail_parse(source, place_of_byte(0), in_quotes(bytes.substr(0, 40)), "a readable CAD model");
+        run.throw_if_stopped();
+        break_into_triangles(shape, meshing);
+        run.throw_if_stopped();
+        MeshFile file = collect(shape, source, run);
+        if (file.mesh.triangles.empty()) fail_parse(source, place_of_byte(0), "no face", "at least one");
+        return file;
+    } catch (const Standard_Failure& failure) {
+        fail_parse(source, place_of_byte(0), in_quotes(failure.GetMessageString()), "a readable CAD model");
+    }
+}
+
+}  // namespace fretwork

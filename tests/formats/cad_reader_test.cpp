@@ -1,0 +1,107 @@
+// CAD models in: closed, outward and as large as they are drawn.
+#include "formats/cad_reader.h"
+
+#include <unistd.h>
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepTools.hxx>
+#include <STEPControl_Writer.hxx>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <numbers>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/mesh/mesh_report.h"
+#include "formats/mesh_file.h"
+#include "formats/read_file.h"
+
+namespace fretwork {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// A plate of 20 x 30 x 5 mm with a hole of radius 4 mm.
+TopoDS_Shape plate() {
+    const TopoDS_Shape box = BRepPrimAPI_MakeBox(20.0, 30.0, 5.0).Shape();
+    const gp_Ax2 axis(gp_Pnt(10, 15, -1), gp_Dir(0, 0, 1));
+    return BRepAlgoAPI_Cut(box, BRepPrimAPI_MakeCylinder(axis, 4.0, 7.0).Shape()).Shape();
+}
+
+std::string brep_of(const TopoDS_Shape& shape) {
+    std::ostringstream out;
+    BRepTools::Write(shape, out);
+    return out.str();
+}
+
+std::string step_of(const TopoDS_Shape& shape) {
+    const auto path = std::filesystem::temp_directory_path() / ("fretwork_" + std::to_string(::getpid()) + ".step");
+    STEPControl_Writer writer;
+    writer.Transfer(shape, STEPControl_AsIs);
+    REQUIRE(writer.Write(path.c_str()) == IFSelect_RetDone);
+    std::string bytes = read_file(path);
+    std::filesystem::remove(path);
+    return bytes;
+}
+
+TEST_CASE("cad: a solid comes out closed, outward and of its volume", "[formats][cad]") {
+    const double expected = 20 * 30 * 5 - kPi * 16 * 5;
+    const MeshFile brep = read_cad(brep_of(plate()), CadFormat::kBrep, "plate.brep");
+    const MeshFile step = read_cad(step_of(plate()), CadFormat::kStep, "plate.step");
+    for (const MeshFile* file : {&brep, &step}) {
+        const MeshReport report = report_mesh(file->mesh);
+        CHECK(report.closed_manifold());
+        CHECK(report.components == 1);
+        // The polygon in place of the hole's circle turns by at most 0.2 rad per side: its area is smaller by at
+        // most the share 0.2^2 / 6, so the plate is larger by at most that of the hole.
+        CHECK(report.volume_mm3 >= expected);
+        CHECK(report.volume_mm3 <= expected + kPi * 16 * 5 * 0.04 / 6);
+        CHECK(report.max_mm == Vec3(20, 30, 5));
+        REQUIRE(file->parts.size() == 1);
+    }
+}
+
+TEST_CASE("cad: a finer deviation comes closer to a sphere", "[formats][cad]") {
+    const std::string bytes = brep_of(BRepPrimAPI_MakeSphere(10.0).Shape());
+    const double expected = 4.0 / 3.0 * kPi * 1000;
+    double last_error = expected;
+    for (const double angle : {0.5, 0.2, 0.08}) {
+        const MeshFile file = read_cad(bytes, CadFormat::kBrep, "ball", {1e-2 * angle, angle});
+        const MeshReport report = report_mesh(file.mesh);
+        CHECK(report.closed_manifold());
+        const double error = expected - report.volume_mm3;
+        CHECK(error > 0.0);
+        CHECK(error < 0.5 * last_error);
+        last_error = error;
+    }
+}
+
+TEST_CASE("cad: the same file gives the same mesh", "[formats][cad][determinism]") {
+    const std::string bytes = brep_of(plate());
+    const MeshFile first = read_cad(bytes, CadFormat::kBrep, "a"), second = read_cad(bytes, CadFormat::kBrep, "b");
+    CHECK(first.mesh.positions_mm == second.mesh.positions_mm);
+    CHECK(first.mesh.triangles == second.mesh.triangles);
+}
+
+TEST_CASE("cad: what cannot be read is refused", "[formats][cad][errors]") {
+    for (const CadFormat format : {CadFormat::kStep, CadFormat::kIges, CadFormat::kBrep})
+        for (const std::string bytes : {"", "not a model", "ISO-10303-21;\nHEADER;\n"})
+            CHECK_THROWS_AS(read_cad(bytes, format, "x"), InvalidInput);
+    CHECK_THROWS_AS(read_cad("", CadFormat::kStep, "x", {0.0, 0.2}), InvalidSetting);
+    const std::string step = step_of(plate());
+    for (std::size_t size = 0; size < step.size(); size += 997) {
+        CAPTURE(size);
+        CHECK_THROWS_AS(read_cad(step.substr(0, size), CadFormat::kStep, "cut.step"), InvalidInput);
+    }
+}
+
+TEST_CASE("cad: chosen by extension, read only", "[formats][cad]") {
+    CHECK(mesh_format_from_path("a.STP") == MeshFormat::kStep);
+    CHECK(read_mesh(brep_of(plate()), MeshFormat::kBrep, "m", LengthUnit::kCentimeter).mesh.positions_mm.size() > 8);
+    CHECK_THROWS_AS(write_mesh({TriangleMesh{}}, MeshFormat::kStep), InvalidSetting);
+}
+
+}  // namespace
+}  // namespace fretwork
