@@ -7,7 +7,7 @@ namespace fretwork {
 
 void VoxelEnergy::look_at(VoxelIndex v, const Choices& choices) {
     v_ = v;
-    blocks_ = level_.neighbors.blocks.get() + level_.neighbors.first[v];
+    blocks_ = level_.neighbors.blocks.data() + level_.neighbors.first[v];
     count_ = level_.neighbors.count[v];
     problem_.kernels.view_neighbors(level_.texels, choices.data(), blocks_, count_, view_);
 }

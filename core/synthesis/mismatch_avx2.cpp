@@ -14,7 +14,7 @@ namespace fretwork {
 namespace {
 
 FRETWORK_AVX2_INLINE __m256i load(const void* p) {
-    return _mm256_load_si256(static_cast<const __m256i*>(p));
+    return _mm256_loadu_si256(static_cast<const __m256i*>(p));  // as fast as an aligned load where it is aligned
 }
 
 /// Constants of a level in registers.

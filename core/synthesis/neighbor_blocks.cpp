@@ -37,16 +37,14 @@ NeighborBlocks pack_neighbors(const PyramidLevel& level, int level_index, const 
         packed.count[v] = static_cast<std::uint16_t>(count);
         blocks += (count + 7) / 8;
     }
-    // Written first by the threads that fill it, not by one that clears it.
-    packed.blocks = std::make_unique_for_overwrite<NeighborBlock[]>(blocks);
-    packed.size = blocks;
+    packed.blocks.resize(blocks);
 
     const float unit = std::ldexp(4096.0F, -level_index);
     // In the order of the voxels, not of the visits: rows of neighbours are read again while they are
     // still in the cache, and the blocks are written as eight streams.
     parallel_for(voxels, 512, [&](std::size_t i) {
         const auto v = static_cast<VoxelIndex>(i);
-        NeighborBlock* block = packed.blocks.get() + packed.first[v];
+        NeighborBlock* block = packed.blocks.data() + packed.first[v];
         const std::uint32_t count = packed.count[v], first = n.first[v];
         for (std::uint32_t j = 0; j < count; ++j)
             fill_lane(block[j / 8], j % 8, n.neighbor[first + j], n.offset[first + j], n.offset[n.reverse[first + j]],

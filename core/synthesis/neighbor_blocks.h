@@ -1,18 +1,17 @@
 // N(v) of the paper, laid out for the inner loop: eight neighbours per block.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "core/base/bulk_vector.h"
 #include "core/pyramid/voxel_pyramid.h"
 #include "core/synthesis/subpasses.h"
 
 namespace fretwork {
 
 /// Offsets as in LevelOffset. Unused lanes repeat the voxel itself with zero offsets.
-struct alignas(32) NeighborBlock {
+struct NeighborBlock {
     std::int32_t out_xy[8];   ///< from the voxel to its neighbour, in the voxel's tangent plane
     std::int32_t back_xy[8];  ///< from the neighbour to the voxel, in the neighbour's
     std::int32_t z[8];        ///< of `out` in the lower half, of `back` in the upper
@@ -23,8 +22,7 @@ struct alignas(32) NeighborBlock {
 struct NeighborBlocks {
     std::vector<std::uint32_t> first;  ///< per voxel
     std::vector<std::uint16_t> count;  ///< |N(v)|
-    std::unique_ptr<NeighborBlock[]> blocks;
-    std::size_t size = 0;  ///< of blocks
+    BulkVector<NeighborBlock> blocks;
 };
 
 /// Most neighbours that are looked at; a 5x5x5 cube holds 124, more only where sheets meet in it.

@@ -30,7 +30,7 @@ class Improver {
 
     Choice improve(VoxelIndex v) {
         v_ = v;
-        probe_ = forced_.holds(v) ? &forced_.probe[v] : nullptr;
+        probe_ = forced_.probe(v);
         const Choice& current = choices_[v];
         best_ = {current.label, current.part, current.texel};
         energy_.look_at(v, choices_);

@@ -23,39 +23,75 @@ std::int64_t squared_distance(const FixedPoint& p, const PointSum& sum) {
     return dx * dx + dy * dy + dz * dz;
 }
 
-/// Tags the parents of tagged voxels, and gives each the most central of the forced points below it.
-/// All forced points below a local voxel are local, because the lists are whole subtrees.
-std::vector<ForcedSolid> tag_parents(const SynthesisProblem& problem, const std::vector<std::uint8_t>& forced_solid,
-                                     const LocalVoxels& local) {
-    std::vector<ForcedSolid> tags(local.size());
-    const ProblemLevel& finest = problem.levels[0];
-    std::vector<VoxelIndex> forced;  // finest voxels
-    for (const VoxelIndex v : local[0])
-        if (forced_solid[v] != 0) forced.push_back(v);
-
-    std::vector<VoxelIndex> ancestor = forced;
-    for (std::size_t l = 0; l < local.size(); ++l) {
-        const ProblemLevel& level = problem.levels[l];
-        if (l > 0)
-            for (VoxelIndex& a : ancestor) a = problem.levels[l - 1].shell->parent[a];
-        tags[l].forced.assign(level.size(), 0);
-        tags[l].probe.resize(level.size());
-        std::vector<PointSum> sum(level.size());
-        for (std::size_t i = 0; i < forced.size(); ++i) {
-            const FixedPoint& p = finest.points[forced[i]];
-            PointSum& s = sum[ancestor[i]];
-            s = {s.x + p.x, s.y + p.y, s.z + p.z, s.count + 1};
+/// Tags the voxels listed in `tagged`; each gets the most central of its forced points.
+/// \param tagged  voxel of the level that each forced point lies below; repeats
+ForcedSolid tag_level(std::size_t voxels, const std::vector<VoxelIndex>& tagged,
+                      const std::vector<FixedPoint>& points) {
+    ForcedSolid tags;
+    tags.entry.assign(voxels, 0);
+    std::vector<PointSum> sums;
+    for (std::size_t i = 0; i < tagged.size(); ++i) {
+        std::uint32_t& entry = tags.entry[tagged[i]];
+        if (entry == 0) {
+            sums.emplace_back();
+            tags.probes.push_back(points[i]);
+            entry = static_cast<std::uint32_t>(sums.size());
         }
-        for (std::size_t i = 0; i < forced.size(); ++i) {
-            const VoxelIndex a = ancestor[i];
-            const FixedPoint& p = finest.points[forced[i]];
-            if (tags[l].forced[a] == 0 || squared_distance(p, sum[a]) < squared_distance(tags[l].probe[a], sum[a]))
-                tags[l].probe[a] = p;
-            tags[l].forced[a] = 1;
-        }
+        PointSum& s = sums[entry - 1];
+        s = {s.x + points[i].x, s.y + points[i].y, s.z + points[i].z, s.count + 1};
+    }
+    for (std::size_t i = 0; i < tagged.size(); ++i) {
+        const std::uint32_t entry = tags.entry[tagged[i]] - 1;
+        FixedPoint& probe = tags.probes[entry];
+        if (squared_distance(points[i], sums[entry]) < squared_distance(probe, sums[entry])) probe = points[i];
     }
     return tags;
 }
+
+/// Tags the forced voxels and all their parents. All forced points below a local voxel are local,
+/// because the lists are whole subtrees.
+std::vector<ForcedSolid> tag_parents(const SynthesisProblem& problem, const std::vector<std::uint8_t>& forced_solid,
+                                     const LocalVoxels& local) {
+    std::vector<VoxelIndex> tagged;
+    std::vector<FixedPoint> points;
+    for (const VoxelIndex v : local[0])
+        if (forced_solid[v] != 0) {
+            tagged.push_back(v);
+            points.push_back(problem.levels[0].points[v]);
+        }
+    std::vector<ForcedSolid> tags;
+    for (std::size_t l = 0; l < local.size(); ++l) {
+        if (l > 0)
+            for (VoxelIndex& v : tagged) v = problem.levels[l - 1].shell->parent[v];
+        tags.push_back(tag_level(problem.levels[l].size(), tagged, points));
+    }
+    return tags;
+}
+
+/// The choices of the local voxels as they were, to go back to when the update is stopped.
+class Restore {
+  public:
+    Restore(const LocalVoxels& local, std::vector<Choices>& all) : local_(local), all_(all) {
+        for (std::size_t l = 0; l < local.size(); ++l)
+            for (const VoxelIndex v : local[l]) saved_.push_back(all[l][v]);
+    }
+    ~Restore() {
+        if (kept_) return;
+        std::size_t i = 0;
+        for (std::size_t l = 0; l < local_.size(); ++l)
+            for (const VoxelIndex v : local_[l]) all_[l][v] = saved_[i++];
+    }
+    Restore(const Restore&) = delete;
+    Restore& operator=(const Restore&) = delete;
+
+    void keep_changes() { kept_ = true; }
+
+  private:
+    const LocalVoxels& local_;
+    std::vector<Choices>& all_;
+    std::vector<Choice> saved_;
+    bool kept_ = false;
+};
 
 /// Children of voxels whose label changed take over the new one.
 void upsample_changed(const SynthesisProblem& problem, std::size_t l, const std::vector<VoxelIndex>& changed_parents,
@@ -93,6 +129,7 @@ std::vector<VoxelIndex> update_locally(const SynthesisProblem& problem, const st
                                        const LocalVoxels& local, std::uint32_t epoch, std::vector<Choices>& all,
                                        const RunControl& run) {
     const std::vector<ForcedSolid> tags = tag_parents(problem, forced_solid, local);
+    Restore restore(local, all);
     std::vector<Label> original;
     for (const VoxelIndex v : local[0]) original.push_back(all[0][v].label);
 
@@ -113,6 +150,7 @@ std::vector<VoxelIndex> update_locally(const SynthesisProblem& problem, const st
     changed.clear();
     for (std::size_t i = 0; i < local[0].size(); ++i)
         if (all[0][local[0][i]].label != original[i]) changed.push_back(local[0][i]);
+    restore.keep_changes();
     return changed;
 }
 

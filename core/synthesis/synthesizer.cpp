@@ -138,6 +138,10 @@ std::vector<VoxelIndex> Synthesizer::resynthesize(const std::vector<std::uint8_t
     if (forced_solid.size() != problem.levels[0].size())
         throw InvalidInput("resynthesis: forced_solid has " + std::to_string(forced_solid.size()) +
                            " entries, expected " + std::to_string(problem.levels[0].size()));
+    for (const VoxelIndex v : changed)
+        if (v >= forced_solid.size())
+            throw InvalidInput("resynthesis: changed names voxel " + std::to_string(v) + ", expected one below " +
+                               std::to_string(forced_solid.size()));
     require(pattern_radius_voxels > 0.0 && std::isfinite(pattern_radius_voxels), "pattern_radius_voxels",
             pattern_radius_voxels, "a positive number");
     run.checkpoint("resynthesis", 0.0);
@@ -167,7 +171,7 @@ std::size_t Synthesizer::memory_bytes() const {
     for (const Choices& c : impl_->choices) bytes += c.capacity() * sizeof(Choice);
     for (const std::vector<std::uint32_t>& t : p.stack.levels) bytes += t.capacity() * sizeof(std::uint32_t);
     for (const ProblemLevel& level : p.levels)
-        bytes += level.neighbors.size * sizeof(NeighborBlock) +
+        bytes += level.neighbors.blocks.size() * sizeof(NeighborBlock) +
                  level.size() * (sizeof(FixedPoint) + sizeof(PlaneIndex) + sizeof(Vec3f) + 3 * sizeof(float));
     return bytes;
 }

@@ -76,6 +76,8 @@ class Synthesizer {
     /// up, adapt; all others keep their labels bit for bit.
     /// Cost proportional to the voxels below `changed`, the newly marked ones.
     /// \return the finest voxels whose label changed, ascending.
+    /// \throws InvalidInput  before `synthesize`, sizes or indices that do not fit the shell;
+    ///         InvalidSetting  a radius that is not positive; Cancelled, with all labels as they were.
     std::vector<VoxelIndex> resynthesize(const std::vector<std::uint8_t>& forced_solid,
                                          const std::vector<VoxelIndex>& changed, double pattern_radius_voxels,
                                          const RunControl& run = {});

@@ -13,7 +13,9 @@ namespace {
 
 using namespace testing;
 
-int channel(std::uint32_t texel, int c) { return static_cast<int>(texel >> (8 * c) & 0xFFu); }
+int channel(std::uint32_t texel, int c) {
+    return static_cast<int>(texel >> (8 * c) & 0xFFu);
+}
 
 /// A picture of irregular blotches, `shift` pixels along.
 Exemplar blotches(int width, int height, int shift, bool tileable) {
