@@ -351,6 +351,28 @@ TEST_CASE("voxelize: walls closer than a voxel do not mix, be they of one body o
     }
 }
 
+TEST_CASE("voxelize: the sides of a blade are one sheet at its edge only, though they share that edge as triangles",
+          "[shell]") {
+    // Two triangles 16 mm long that open by a fifth of a voxel over their length.
+    TriangleMesh mesh;
+    mesh.positions_mm = {{0, 0, 0}, {0, 16, 0}, {16, 8, 0.1}, {16, 8, -0.1}};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}};
+    const SurfaceVoxels shell = voxelize(mesh, {.resolution = 16});
+    std::size_t at_edge = 0;
+    std::size_t behind = 0;
+    for (VoxelIndex v = 0; v < shell.size(); ++v) {
+        const std::size_t listed =
+            static_cast<std::size_t>(std::count(shell.coords.begin(), shell.coords.end(), shell.coords[v]));
+        CHECK(listed == (shell.coords[v][0] == 0 ? 1 : 2));
+        (shell.coords[v][0] == 0 ? at_edge : behind) += 1;
+        if (shell.coords[v][0] < 2) continue;
+        for (const VoxelIndex w : shell.adjacency.of(v)) CHECK(shell.normals[v].dot(shell.normals[w]) > 0.9F);
+    }
+    CHECK(at_edge == 17);
+    CHECK(behind > 200);
+    CHECK(connected_components(shell.adjacency).count() == 1);
+}
+
 TEST_CASE("voxelize: around a sharp edge the two faces are linked over the cells of the edge", "[shell]") {
     const SurfaceVoxels shell = voxelize(make_box({0, 0, 0}, {16, 16, 16}), {.resolution = 16});
     // Steps from the middle of the top to the middle of the side +x: 8 to the edge and 8 down, as on the surface.
@@ -497,6 +519,16 @@ TEST_CASE("voxelize: stops when asked and reports progress in order", "[shell]")
     voxelize(make_sphere(5.0, 32, 64), {.resolution = 16}, run);
     CHECK(last == 1.0);
 
+    // In the middle of a run, after any of its steps.
+    for (const double at : {0.0, 0.05, 0.4, 0.7, 0.85}) {
+        std::stop_source later;
+        const RunControl stopping(
+            [&](std::string_view, double fraction) {
+                if (fraction >= at) later.request_stop();
+            },
+            later.get_token());
+        CHECK_THROWS_AS(voxelize(make_sphere(5.0, 32, 64), {.resolution = 16}, stopping), Cancelled);
+    }
     source.request_stop();
     CHECK_THROWS_AS(voxelize(make_square(1.0), {}, run), Cancelled);
 }
