@@ -8,6 +8,7 @@
 #include "formats/atomic_write.h"
 #include "formats/mesh_writer_input.h"
 #include "formats/number_text.h"
+#include "formats/opc_parts.h"
 #include "formats/threemf_names.h"
 #include "formats/voxel_sheets.h"
 #include "formats/xml_text.h"
@@ -18,11 +19,6 @@ namespace {
 
 constexpr std::size_t kItemsPerPiece = 1 << 15;  ///< vertices or triangles packed at once
 constexpr std::size_t kMostMetadataBytes = 1 << 18;
-
-/// ` name="value"`, escaped.
-std::string attribute(std::string_view name, std::string_view value) {
-    return " " + std::string(name) + "=\"" + xml_escaped(value) + "\"";
-}
 
 void append_attribute(std::string& out, std::string_view name_and_quote, std::uint64_t value) {
     out += name_and_quote;
@@ -128,29 +124,12 @@ class PackageWriter {
         placed_.push_back(std::move(placed));
     }
 
-    [[nodiscard]] std::string content_types() const {
-        std::string xml =
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-            "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\n";
-        const auto add = [&](std::string_view extension, std::string_view type) {
-            xml += " <Default" + attribute("Extension", extension) + attribute("ContentType", type) + "/>\n";
-        };
-        add("rels", "application/vnd.openxmlformats-package.relationships+xml");
-        add("model", "application/vnd.ms-package.3dmanufacturing-3dmodel+xml");
-        add("png", "image/png");
-        add("toml", "application/toml");
-        add("json", "application/json");
-        return xml + "</Types>\n";
-    }
-
-    static std::string relations(const std::vector<std::pair<std::string, std::string_view>>& targets) {
-        std::string xml =
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-            "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\n";
-        for (std::size_t i = 0; i < targets.size(); ++i)
-            xml += " <Relationship" + attribute("Id", "rel" + std::to_string(i)) +
-                   attribute("Target", targets[i].first) + attribute("Type", targets[i].second) + "/>\n";
-        return xml + "</Relationships>\n";
+    [[nodiscard]] static std::string content_types() {
+        return content_types_xml({{"rels", "application/vnd.openxmlformats-package.relationships+xml"},
+                                  {"model", "application/vnd.ms-package.3dmanufacturing-3dmodel+xml"},
+                                  {"png", "image/png"},
+                                  {"toml", "application/toml"},
+                                  {"json", "application/json"}});
     }
 
     [[nodiscard]] std::string root_relations() const {
@@ -160,7 +139,7 @@ class PackageWriter {
             targets.emplace_back("/Metadata/thumbnail.png", threemf::kThumbnailRelation);
         if (!package_.spec_toml.empty()) targets.emplace_back("/Metadata/fretwork.toml", threemf::kSpecRelation);
         if (!package_.report_json.empty()) targets.emplace_back("/Metadata/fretwork.json", threemf::kReportRelation);
-        return relations(targets);
+        return relationships_xml(targets);
     }
 
     void add_sheets(ZipWriter& zip) {
@@ -174,7 +153,7 @@ class PackageWriter {
                     targets.emplace_back(path, threemf::kTextureRelation);
                 }
             }
-        if (!targets.empty()) zip.add(threemf::kModelRelationsPart, relations(targets));
+        if (!targets.empty()) zip.add(threemf::kModelRelationsPart, relationships_xml(targets));
     }
 
     /// The model part as pieces: texts as they are, and runs of vertices or triangles made when wanted.
@@ -198,7 +177,7 @@ class PackageWriter {
         }
         text += "</resources>\n<build>\n";
         for (const PlacedObject& placed : placed_)
-            text += "<item" + attribute("objectid", std::to_string(placed.object_id)) + "/>\n";
+            text += "<item" + xml_attribute("objectid", std::to_string(placed.object_id)) + "/>\n";
         text += "</build>\n</model>\n";
         pieces.push_back({std::move(text)});
         return deflate_pieces(
@@ -225,11 +204,11 @@ class PackageWriter {
         const bool colored = std::ranges::any_of(placed_, [](const auto& p) { return !p.palette.empty(); });
         const bool volumetric = std::ranges::any_of(placed_, [](const auto& p) { return p.field.has_value(); });
         if (colored || volumetric)
-            xml += attribute("recommendedextensions", !volumetric ? "m" : !colored ? "v" : "m v");
-        xml += attribute("xmlns", threemf::kCore) + attribute("xmlns:m", threemf::kMaterial) +
-               attribute("xmlns:v", threemf::kVolumetric) + attribute("xmlns:fw", threemf::kFretwork) + ">\n";
+            xml += xml_attribute("recommendedextensions", !volumetric ? "m" : !colored ? "v" : "m v");
+        xml += xml_attribute("xmlns", threemf::kCore) + xml_attribute("xmlns:m", threemf::kMaterial) +
+               xml_attribute("xmlns:v", threemf::kVolumetric) + xml_attribute("xmlns:fw", threemf::kFretwork) + ">\n";
         const auto add = [&](std::string_view name, std::string_view value) {
-            xml += "<metadata" + attribute("name", name) + ">" + xml_escaped(value) + "</metadata>\n";
+            xml += "<metadata" + xml_attribute("name", name) + ">" + xml_escaped(value) + "</metadata>\n";
         };
         add("Application", package_.application);
         if (!package_.title.empty()) add("Title", package_.title);
@@ -245,8 +224,9 @@ class PackageWriter {
     std::string resources(PlacedObject& placed) {
         std::string xml;
         if (placed.color_group_id != 0) {
-            xml += "<m:colorgroup" + attribute("id", std::to_string(placed.color_group_id)) + ">";
-            for (const Rgb8& color : placed.palette) xml += "<m:color" + attribute("color", hex_color(color)) + "/>";
+            xml += "<m:colorgroup" + xml_attribute("id", std::to_string(placed.color_group_id)) + ">";
+            for (const Rgb8& color : placed.palette)
+                xml += "<m:color" + xml_attribute("color", hex_color(color)) + "/>";
             xml += "</m:colorgroup>\n";
         }
         if (placed.field) {
@@ -263,29 +243,29 @@ class PackageWriter {
     std::uint64_t add_function(std::string& xml, const SheetStack& stack) {
         const std::string image = std::to_string(next_id_++);
         const std::uint64_t function = next_id_++;
-        xml += "<v:image3d" + attribute("id", image) + attribute("name", stack.name) + "><v:imagestack" +
-               attribute("rowcount", std::to_string(stack.rows)) +
-               attribute("columncount", std::to_string(stack.columns)) +
-               attribute("sheetcount", std::to_string(stack.sheets.size())) + ">\n";
+        xml += "<v:image3d" + xml_attribute("id", image) + xml_attribute("name", stack.name) + "><v:imagestack" +
+               xml_attribute("rowcount", std::to_string(stack.rows)) +
+               xml_attribute("columncount", std::to_string(stack.columns)) +
+               xml_attribute("sheetcount", std::to_string(stack.sheets.size())) + ">\n";
         for (std::size_t k = 0; k < stack.sheets.size(); ++k)
-            xml += "<v:imagesheet" + attribute("path", sheet_path(stack.name, k)) + "/>\n";
-        xml += "</v:imagestack></v:image3d>\n<v:functionfromimage3d" + attribute("id", std::to_string(function)) +
-               attribute("displayname", stack.name) + attribute("image3did", image) +
+            xml += "<v:imagesheet" + xml_attribute("path", sheet_path(stack.name, k)) + "/>\n";
+        xml += "</v:imagestack></v:image3d>\n<v:functionfromimage3d" + xml_attribute("id", std::to_string(function)) +
+               xml_attribute("displayname", stack.name) + xml_attribute("image3did", image) +
                " filter=\"nearest\" valueoffset=\"0\" valuescale=\"1\" tilestyleu=\"clamp\" tilestylev=\"clamp\""
                " tilestylew=\"clamp\"/>\n";
         return function;
     }
 
     static std::string volume_data(const PlacedObject& placed, std::uint64_t field, std::uint64_t reinforced) {
-        const std::string transform = attribute("transform", grid_transform(placed.object->voxels->shell.grid));
+        const std::string transform = xml_attribute("transform", grid_transform(placed.object->voxels->shell.grid));
         const auto property = [&](std::string_view name, std::uint64_t function, std::string_view channel) {
-            return "<v:property" + attribute("name", name) + " required=\"true\"" +
-                   attribute("functionid", std::to_string(function)) + attribute("channel", channel) + transform +
-                   "/>\n";
+            return "<v:property" + xml_attribute("name", name) + " required=\"true\"" +
+                   xml_attribute("functionid", std::to_string(function)) + xml_attribute("channel", channel) +
+                   transform + "/>\n";
         };
-        std::string xml = "<v:volumedata" + attribute("id", std::to_string(placed.volume_id)) + ">\n";
+        std::string xml = "<v:volumedata" + xml_attribute("id", std::to_string(placed.volume_id)) + ">\n";
         if (!placed.object->voxels->colors.empty())
-            xml += "<v:color" + attribute("functionid", std::to_string(field)) + attribute("channel", "color") +
+            xml += "<v:color" + xml_attribute("functionid", std::to_string(field)) + xml_attribute("channel", "color") +
                    transform + "/>\n";
         xml += property("fw:solid", field, "alpha");
         if (reinforced != 0) xml += property("fw:reinforced", reinforced, "red");
@@ -309,12 +289,12 @@ class PackageWriter {
     }
 
     static std::string object_head(const PlacedObject& placed) {
-        std::string xml = "<object" + attribute("id", std::to_string(placed.object_id)) + " type=\"model\"";
-        if (!placed.object->name.empty()) xml += attribute("name", placed.object->name);
+        std::string xml = "<object" + xml_attribute("id", std::to_string(placed.object_id)) + " type=\"model\"";
+        if (!placed.object->name.empty()) xml += xml_attribute("name", placed.object->name);
         if (placed.color_group_id != 0)
-            xml += attribute("pid", std::to_string(placed.color_group_id)) + " pindex=\"0\"";
+            xml += xml_attribute("pid", std::to_string(placed.color_group_id)) + " pindex=\"0\"";
         xml += "><mesh";
-        if (placed.volume_id != 0) xml += attribute("v:volumeid", std::to_string(placed.volume_id));
+        if (placed.volume_id != 0) xml += xml_attribute("v:volumeid", std::to_string(placed.volume_id));
         return xml + "><vertices>\n";
     }
 
@@ -338,7 +318,7 @@ class PackageWriter {
     static std::string triangles_text(const PlacedObject& placed, std::size_t begin) {
         const auto& triangles = placed.object->mesh.triangles;
         const std::size_t end = std::min(triangles.size(), begin + kItemsPerPiece);
-        const std::string group = attribute("pid", std::to_string(placed.color_group_id));
+        const std::string group = xml_attribute("pid", std::to_string(placed.color_group_id));
         std::string xml;
         xml.reserve(112 * (end - begin));
         for (std::size_t t = begin; t < end; ++t) {

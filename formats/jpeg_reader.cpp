@@ -26,6 +26,8 @@ class JpegSource {
         errors_.emit_message = &JpegSource::on_message;
         jpeg_.client_data = this;
         jpeg_create_decompress(&jpeg_);
+        progress_.progress_monitor = &JpegSource::on_progress;
+        jpeg_.progress = &progress_;
         jpeg_mem_src(&jpeg_, reinterpret_cast<const unsigned char*>(bytes.data()),
                      static_cast<unsigned long>(bytes.size()));
     }
@@ -51,8 +53,16 @@ class JpegSource {
         if (level < 0) on_error(jpeg);
     }
 
+    /// A progressive picture may repeat its scans at a few bytes each; every one costs a pass over all pixels.
+    static void on_progress(j_common_ptr jpeg) {
+        constexpr int kMaxScans = 200;
+        if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number > kMaxScans)
+            static_cast<const JpegSource*>(jpeg->client_data)->fail("over 200 scans", "fewer");
+    }
+
     std::string_view bytes_;
     std::string_view source_;
+    jpeg_progress_mgr progress_{};
     jpeg_error_mgr errors_{};
     jpeg_decompress_struct jpeg_{};
 };

@@ -11,6 +11,7 @@
 #include "formats/parse_error.h"
 #include "formats/text_scanner.h"
 #include "formats/threemf_names.h"
+#include "formats/threemf_values.h"
 #include "formats/xml_reader.h"
 
 namespace fretwork::threemf {
@@ -20,7 +21,6 @@ constexpr std::size_t kMaxItems = 1 << 16;  ///< of objects, components, build i
 constexpr std::size_t kMaxTextBytes = 1 << 20;
 constexpr std::size_t kMaxColors = 1 << 24;
 constexpr std::size_t kStopEvery = 1 << 14;
-constexpr std::int64_t kMaxId = 0x7FFFFFFF;
 
 /// Where in the document we are; kSkip stands for anything that is not read, with all it holds.
 enum class Within {
@@ -42,27 +42,6 @@ enum class Within {
     kVolumeData,
     kLeaf,  ///< read, and holds nothing that matters
 };
-
-/// #RRGGBB or #RRGGBBAA
-std::optional<Rgb8> parse_color(std::string_view text) {
-    if ((text.size() != 7 && text.size() != 9) || text.front() != '#') return std::nullopt;
-    std::array<unsigned, 8> digits{};
-    for (std::size_t i = 1; i < text.size(); ++i) {
-        const char c = text[i];
-        if (c >= '0' && c <= '9') {
-            digits[i - 1] = static_cast<unsigned>(c - '0');
-        } else if (c >= 'a' && c <= 'f') {
-            digits[i - 1] = static_cast<unsigned>(c - 'a') + 10;
-        } else if (c >= 'A' && c <= 'F') {
-            digits[i - 1] = static_cast<unsigned>(c - 'A') + 10;
-        } else {
-            return std::nullopt;
-        }
-    }
-    Rgb8 color{};
-    for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<std::uint8_t>(16 * digits[2 * k] + digits[2 * k + 1]);
-    return color;
-}
 
 }  // namespace
 
@@ -207,33 +186,8 @@ class ModelReader::Handler : public XmlHandler {
         }
     }
 
-    std::string_view need(const XmlElement& e, std::string_view attribute) const {
-        const auto value = e.find(attribute);
-        if (!value) xml_.fail("element " + in_quotes(e.name) + " without " + std::string(attribute), "that attribute");
-        return *value;
-    }
-
-    std::int64_t whole(std::string_view text, std::string_view what, std::int64_t least, std::int64_t most) const {
-        std::int64_t value = 0;
-        if (!parse_integer(text, value) || value < least || value > most)
-            xml_.fail(std::string(what) + " " + in_quotes(text),
-                      "an integer from " + std::to_string(least) + " to " + std::to_string(most));
-        return value;
-    }
-
-    double number(std::string_view text, std::string_view what) const {
-        double value = 0.0;
-        if (!parse_number(text, value) || std::abs(value) > kMaxCoordinate)
-            xml_.fail(std::string(what) + " " + in_quotes(text), "a finite number of at most 1e9 in size");
-        return value;
-    }
-
-    ResourceId id_in(const XmlElement& e, std::string_view attribute) const {
-        return static_cast<ResourceId>(whole(need(e, attribute), attribute, 1, kMaxId));
-    }
-
     ResourceId new_id(const XmlElement& e) {
-        const ResourceId id = id_in(e, "id");
+        const ResourceId id = values_.id(e, "id");
         if (!ids_.insert(id).second)
             xml_.fail("a second resource with id " + std::to_string(id), "ids without repeats");
         if (ids_.size() > kMaxItems) xml_.fail("over 65536 resources", "fewer");
@@ -252,11 +206,8 @@ class ModelReader::Handler : public XmlHandler {
     }
 
     Within add_color(const XmlElement& e, std::string_view attribute) {
-        const std::string_view text = need(e, attribute);
-        const auto color = parse_color(text);
-        if (!color) xml_.fail("colour " + in_quotes(text), "#RRGGBB or #RRGGBBAA");
         if (table_->colors.size() >= kMaxColors) xml_.fail("over 16777216 colours", "fewer");
-        table_->colors.push_back(*color);
+        table_->colors.push_back(values_.color(values_.need(e, attribute)));
         return Within::kLeaf;
     }
 
@@ -269,8 +220,8 @@ class ModelReader::Handler : public XmlHandler {
         const auto pid = e.find("pid");
         default_color_ = std::nullopt;
         if (pid) {
-            const std::int64_t group = whole(*pid, "pid", 1, kMaxId);
-            const std::int64_t index = whole(e.find("pindex").value_or("0"), "pindex", 0, kMaxId);
+            const std::int64_t group = values_.whole(*pid, "pid", 1, kMaxId);
+            const std::int64_t index = values_.whole(e.find("pindex").value_or("0"), "pindex", 0, kMaxId);
             default_color_ = color_at(group, index);
         }
         return Within::kObject;
@@ -279,7 +230,7 @@ class ModelReader::Handler : public XmlHandler {
     Within start_mesh(const XmlElement& e) {
         if (!object_->mesh.positions_mm.empty()) xml_.fail("a second mesh in one object", "one");
         if (const auto volume = e.find("volumeid", kVolumetric))
-            object_->volume = static_cast<ResourceId>(whole(*volume, "volumeid", 1, kMaxId));
+            object_->volume = static_cast<ResourceId>(values_.whole(*volume, "volumeid", 1, kMaxId));
         colored_ = false;
         return Within::kMesh;
     }
@@ -287,7 +238,8 @@ class ModelReader::Handler : public XmlHandler {
     Within add_vertex(const XmlElement& e) {
         auto& positions = object_->mesh.positions_mm;
         if (positions.size() % kStopEvery == 0) run_.throw_if_stopped();
-        positions.emplace_back(number(need(e, "x"), "x"), number(need(e, "y"), "y"), number(need(e, "z"), "z"));
+        positions.emplace_back(values_.number(values_.need(e, "x"), "x"), values_.number(values_.need(e, "y"), "y"),
+                               values_.number(values_.need(e, "z"), "z"));
         return Within::kLeaf;
     }
 
@@ -297,7 +249,8 @@ class ModelReader::Handler : public XmlHandler {
         Triangle triangle{};
         static constexpr std::array<std::string_view, 3> kCorners = {"v1", "v2", "v3"};
         for (std::size_t k = 0; k < 3; ++k)
-            triangle[k] = static_cast<std::uint32_t>(whole(need(e, kCorners[k]), kCorners[k], 0, 0xFFFFFFFE));
+            triangle[k] =
+                static_cast<std::uint32_t>(values_.whole(values_.need(e, kCorners[k]), kCorners[k], 0, 0xFFFFFFFE));
         // Forbidden by the format, yet common; such a triangle has no area and nothing to carve.
         if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
             ++degenerate_triangles_;
@@ -321,16 +274,16 @@ class ModelReader::Handler : public XmlHandler {
     std::optional<Rgb8> triangle_color(const XmlElement& e) {
         const auto pid = e.find("pid"), p1 = e.find("p1");
         if (!pid || !p1) return default_color_;
-        const std::int64_t group = whole(*pid, "pid", 1, kMaxId);
-        const auto first = color_at(group, whole(*p1, "p1", 0, kMaxId));
+        const std::int64_t group = values_.whole(*pid, "pid", 1, kMaxId);
+        const auto first = color_at(group, values_.whole(*p1, "p1", 0, kMaxId));
         if (!first) {
             ++skipped_properties_;
             return default_color_;
         }
         const auto p2 = e.find("p2"), p3 = e.find("p3");
         if (!p2 || !p3 || (*p2 == *p1 && *p3 == *p1)) return first;
-        const auto second = color_at(group, whole(*p2, "p2", 0, kMaxId));
-        const auto third = color_at(group, whole(*p3, "p3", 0, kMaxId));
+        const auto second = color_at(group, values_.whole(*p2, "p2", 0, kMaxId));
+        const auto third = color_at(group, values_.whole(*p3, "p3", 0, kMaxId));
         Rgb8 mean{};
         for (std::size_t k = 0; k < 3; ++k)
             mean[k] = static_cast<std::uint8_t>(((*first)[k] + (*second)[k] + (*third)[k] + 1) / 3);
@@ -360,26 +313,12 @@ class ModelReader::Handler : public XmlHandler {
     Within add_instance(const XmlElement& e, std::vector<Instance>& to, std::string_view what) {
         if (to.size() >= kMaxItems) xml_.fail("over 65536 " + std::string(what), "fewer");
         Instance instance;
-        instance.object = id_in(e, "objectid");
+        instance.object = values_.id(e, "objectid");
         instance.part = e.find("path", kProduction).value_or("");
         instance.line = xml_.line();
-        if (const auto transform = e.find("transform")) instance.transform = parse_transform(*transform);
+        if (const auto transform = e.find("transform")) instance.transform = values_.transform(*transform);
         to.push_back(std::move(instance));
         return Within::kLeaf;
-    }
-
-    /// Twelve numbers, row vectors times matrix: the transpose of what Eigen stores.
-    Eigen::Affine3d parse_transform(std::string_view text) const {
-        Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-        TextScanner words(text, "", {.comment = 0});
-        for (int row = 0; row < 4; ++row)
-            for (int column = 0; column < 3; ++column)
-                transform.matrix()(column, row) = number(words.word(), "transform");
-        if (!words.word().empty()) xml_.fail("transform " + in_quotes(text), "twelve numbers");
-        const double size = transform.linear().norm();
-        if (!(std::abs(transform.linear().determinant()) > 1e-12 * size * size * size))
-            xml_.fail("the singular transform " + in_quotes(text), "one that keeps three dimensions");
-        return transform;
     }
 
     Within start_image(const XmlElement& e) {
@@ -390,53 +329,46 @@ class ModelReader::Handler : public XmlHandler {
 
     Within start_stack(const XmlElement& e) {
         constexpr std::int64_t kMost = 1024;
-        image_->rows = whole(need(e, "rowcount"), "rowcount", 1, kMost);
-        image_->columns = whole(need(e, "columncount"), "columncount", 1, kMost);
-        sheets_wanted_ = static_cast<std::size_t>(whole(need(e, "sheetcount"), "sheetcount", 1, kMost));
+        image_->rows = values_.whole(values_.need(e, "rowcount"), "rowcount", 1, kMost);
+        image_->columns = values_.whole(values_.need(e, "columncount"), "columncount", 1, kMost);
+        sheets_wanted_ = static_cast<std::size_t>(values_.whole(values_.need(e, "sheetcount"), "sheetcount", 1, kMost));
         return Within::kImageStack;
     }
 
     Within add_sheet(const XmlElement& e) {
         if (image_->sheets.size() >= sheets_wanted_)
             xml_.fail("more sheets than the " + std::to_string(sheets_wanted_) + " announced", "that number");
-        image_->sheets.emplace_back(need(e, "path"));
+        image_->sheets.emplace_back(values_.need(e, "path"));
         return Within::kLeaf;
-    }
-
-    TileStyle tile_style(const XmlElement& e, std::string_view attribute) const {
-        const std::string_view text = e.find(attribute).value_or("wrap");
-        if (text == "wrap") return TileStyle::kWrap;
-        if (text == "mirror") return TileStyle::kMirror;
-        if (text != "clamp") xml_.fail("tile style " + in_quotes(text), "wrap, mirror or clamp");
-        return TileStyle::kClamp;
     }
 
     Within add_function(const XmlElement& e) {
         ImageFunction& function = model_.functions[new_id(e)];
-        function.image = id_in(e, "image3did");
-        function.offset = number(e.find("valueoffset").value_or("0"), "valueoffset");
-        function.scale = number(e.find("valuescale").value_or("1"), "valuescale");
+        function.image = values_.id(e, "image3did");
+        function.offset = values_.number(e.find("valueoffset").value_or("0"), "valueoffset");
+        function.scale = values_.number(e.find("valuescale").value_or("1"), "valuescale");
         const std::string_view filter = e.find("filter").value_or("linear");
         if (filter != "linear" && filter != "nearest") xml_.fail("filter " + in_quotes(filter), "linear or nearest");
         function.nearest = filter == "nearest";
-        function.tile[0] = tile_style(e, "tilestyleu");
-        function.tile[1] = tile_style(e, "tilestylev");
-        function.tile[2] = tile_style(e, "tilestylew");
+        function.tile[0] = values_.tile_style(e, "tilestyleu");
+        function.tile[1] = values_.tile_style(e, "tilestylev");
+        function.tile[2] = values_.tile_style(e, "tilestylew");
         return Within::kLeaf;
     }
 
     Within add_property(const XmlElement& e) {
         if (volume_->size() >= 256) xml_.fail("over 256 properties", "fewer");
         VolumeProperty property;
-        if (e.name == "property") property.name = need(e, "name");
-        property.function = id_in(e, "functionid");
-        property.channel = need(e, "channel");
-        if (const auto transform = e.find("transform")) property.transform = parse_transform(*transform);
+        if (e.name == "property") property.name = values_.need(e, "name");
+        property.function = values_.id(e, "functionid");
+        property.channel = values_.need(e, "channel");
+        if (const auto transform = e.find("transform")) property.transform = values_.transform(*transform);
         volume_->push_back(std::move(property));
         return Within::kLeaf;
     }
 
     XmlReader xml_;
+    ThreemfValues values_{xml_};
     const RunControl& run_;
     Model model_;
     std::vector<Within> within_;

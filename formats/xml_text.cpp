@@ -49,4 +49,9 @@ std::string xml_escaped(std::string_view text) {
     return out;
 }
 
+std::string xml_attribute(std::string_view name, std::string_view value) {
+    std::string text = " ";
+    return text.append(name).append("=\"").append(xml_escaped(value)).append("\"");
+}
+
 }  // namespace fretwork

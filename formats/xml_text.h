@@ -10,4 +10,7 @@ namespace fretwork {
 /// U+FFFD; line ends and tabs stay as character data keeps them.
 [[nodiscard]] std::string xml_escaped(std::string_view text);
 
+/// ` name="value"`, the value escaped.
+[[nodiscard]] std::string xml_attribute(std::string_view name, std::string_view value);
+
 }  // namespace fretwork
