@@ -29,8 +29,8 @@ namespace {
 // The flow, with the seconds that each stage takes on a bunny of 256 voxels. The loop of Algorithm 1
 // is one entry, because nobody knows how often it will turn.
 std::vector<PlannedStage> planned_stages() {
-    return {{"repair", 1.0},     {"voxelize", 1.0}, {"pyramid", 1.5},   {"synthesize", 4.0},
-            {"reinforce", 12.0}, {"enlarge", 3.0},  {"solidify", 25.0}, {"verify", 2.0}};
+    return {{"repair", 0.6},     {"voxelize", 0.6}, {"pyramid", 1.0},   {"synthesize", 2.5},
+            {"reinforce", 25.0}, {"enlarge", 4.0},  {"solidify", 26.0}, {"verify", 10.0}};
 }
 
 std::vector<SettingAssignment> resolved_document(const Settings& settings, const ResolvedSettings& resolved) {
@@ -186,7 +186,6 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     result.carved.triangle_colors =
         output_colors(std::move(result.carved.triangle_colors), settings.output.colour, input.exemplar);
     result.voxel_colors = output_colors(std::move(result.voxel_colors), settings.output.colour, input.exemplar);
-
 
     report.seconds = plan.take_seconds();
     report.seconds_total = plan.total_seconds();

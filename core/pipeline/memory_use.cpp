@@ -13,12 +13,12 @@
 namespace fretwork {
 namespace {
 
-// Bytes per surface voxel at the peak, measured on runs at 64 to 512 voxels: pyramid and neighbourhoods,
-// labels, graphs, and the lattice of the surfacing, which grows with the wall.
-constexpr double kBytesPerVoxel = 4000.0;
-constexpr double kBytesPerVoxelOfWall = 1500.0;
-constexpr double kBytesPerTriangle = 1000.0;  // input mesh, its box trees and its repair
-constexpr double kBytesFixed = 120e6;
+// Bytes per surface voxel at the peak: pyramid and neighbourhoods, labels, graphs, and the lattice of the
+// surfacing, which grows with the wall. Runs of 64 to 256 voxels used 60 to 90 % of what these give.
+constexpr double kBytesPerVoxel = 3500.0;
+constexpr double kBytesPerVoxelOfWall = 700.0;
+constexpr double kBytesPerTriangle = 700.0;  // input mesh, its box trees and its repair
+constexpr double kBytesFixed = 90e6;
 constexpr double kVoxelsPerArea = 1.6;  // a plane at any tilt meets 1 to 1.7 cells per cell face
 
 double area_mm2(const TriangleMesh& mesh) {

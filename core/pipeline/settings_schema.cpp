@@ -199,6 +199,9 @@ Settings settings_from(const SpecDocument& document) {
     for (const SettingAssignment& assignment : document.assignments)
         if (assignment.key == "synthesis.preset") apply_setting(settings, assignment);
     apply_preset(settings, settings.synthesis.preset);
+    // A voxel size replaces the preset's resolution; beside a resolution that was given it is a contradiction.
+    if (std::ranges::count(document.assignments, "shell.voxel_mm", &SettingAssignment::key) > 0)
+        settings.shell.resolution.reset();
     for (const SettingAssignment& assignment : document.assignments)
         if (assignment.key != "synthesis.preset") apply_setting(settings, assignment);
     for (const SettingTable& table : document.tables) apply_table(settings, table);
