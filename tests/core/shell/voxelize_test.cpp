@@ -327,6 +327,10 @@ TEST_CASE("voxelize: the two sides of a thin plate meet at the rim alone", "[she
         CHECK(sign * rotated(normal, axis, -angle).positions_mm[0][2] > 0.999);
         for (const VoxelIndex w : shell.adjacency.of(v)) CHECK(side_of(w) == side_of(v));
     }
+    // Where both sides keep cells of their own up to the rim, not even there a link leads from one to the other.
+    if (thickness_voxels >= 0.9 && angle == 0.0)
+        for (VoxelIndex v = 0; v < shell.size(); ++v)
+            for (const VoxelIndex w : shell.adjacency.of(v)) CHECK(shell.normals[v].dot(shell.normals[w]) > -0.5F);
     // Each side has its own entries: as many as cells of the side's area, at least.
     CHECK(inner[0] > 600);
     CHECK(inner[1] > 600);
