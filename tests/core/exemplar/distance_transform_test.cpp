@@ -110,6 +110,20 @@ TEST_CASE("distance transform: measures across the border only when told to wrap
     CHECK(signed_distance_px(level, 12, 5, true)[1] == Approx(-0.5));
 }
 
+TEST_CASE("distance transform: at a saddle the stronger phase is joined", "[exemplar]") {
+    // Two solid pixels that touch at a corner. Where the empty ones beside the corner are weak, the border cuts each of
+    // them off, between the crossings 1/6 px away on two links: at 1/6 / sqrt(2). Where they are strong, it cuts off
+    // the solid ones.
+    const auto distances = [](float empty) {
+        std::vector<float> level(16, -1.0f);
+        level[5] = level[10] = 1.0f;
+        level[6] = level[9] = empty;
+        return signed_distance_px(level, 4, 4, false);
+    };
+    CHECK(distances(-0.2f)[6] == Approx(std::sqrt(0.5) / 6));
+    CHECK(distances(-5.0f)[10] == Approx(-std::sqrt(0.5) / 6));
+}
+
 TEST_CASE("distance transform: is infinite where there is no border", "[exemplar]") {
     const float infinity = std::numeric_limits<float>::infinity();
     CHECK(signed_distance_px(std::vector<float>(20, -1.0f), 5, 4, true) == std::vector<float>(20, infinity));
