@@ -120,26 +120,26 @@ void ReinforcementTurn::stress_as_printed(double limit_pa, const RunControl& run
     }
 }
 
-bool ReinforcementTurn::stress_within_budget(double limit_pa, int solutions, std::size_t& voxels_left,
+void ReinforcementTurn::stress_within_budget(double limit_pa, int solutions, std::size_t& voxels_left,
                                              const RunControl& run) {
     for (int solution = 0;; ++solution) {
         const ScoreSummary summary = summarize_solid_scores(scores_pa_, states_);
-        if (summary.max_pa <= limit_pa) return true;
+        if (summary.max_pa <= limit_pa) return;
         // The farther from the limit, the larger the batch: one bridge for every three edges above it.
         std::size_t above = 0;
         for (std::size_t e = 0; e < states_.size(); ++e)
             above += states_[e] == EdgeState::kSolid && scores_pa_[e] > limit_pa ? 1u : 0u;
         const auto least = static_cast<std::size_t>(context_.settings.batch);
-        const std::size_t most = std::clamp(above / 3, least, 3 * least);
+        const std::size_t most = std::clamp(above / 3, least, 4 * least);
         const std::vector<EdgeIndex> taken = select_bridges(places_, scores_pa_, empty_edges(), most, kCancelFactor);
         if (taken.empty()) {
             out_of_candidates_ = true;
-            return false;
+            return;
         }
         for (const EdgeIndex e : taken)
-            if (!paint_within(e, BridgeReason::kStress, voxels_left)) return false;
+            if (!paint_within(e, BridgeReason::kStress, voxels_left)) return;
         close_filled_gaps();
-        if (solution + 1 == solutions) return false;
+        if (solution + 1 == solutions) return;
         renew_scores(run);
     }
 }

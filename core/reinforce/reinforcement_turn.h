@@ -46,10 +46,10 @@ class ReinforcementTurn {
     /// As printed: bridges until no edge, empty ones included, is above `limit_pa` or none is empty.
     void stress_as_printed(double limit_pa, const RunControl& run);
 
-    /// At most `solutions` batches of bridges, until no solid edge is above `limit_pa`.
+    /// At most `solutions` batches of bridges, until no solid edge is above `limit_pa`, candidates run out or
+    /// the next bridge does not fit the budget.
     /// \param voxels_left  reduced by what is painted
-    /// \return true when the limit is met; false when batches, budget or candidates ran out.
-    bool stress_within_budget(double limit_pa, int solutions, std::size_t& voxels_left, const RunControl& run);
+    void stress_within_budget(double limit_pa, int solutions, std::size_t& voxels_left, const RunControl& run);
 
     /// Bridges wherever the way round is longer than `geodesic_factor` times the extent of the component.
     void geodesics(std::size_t& voxels_left, const RunControl& run);

@@ -17,9 +17,13 @@
 namespace fretwork {
 namespace {
 
-/// Solutions of the equilibrium in one turn. More would spare turns, each with a resynthesis, but bridges that are
-/// already there, blended into the pattern, make better beams than bridges that are only planned.
-constexpr int kSolutionsPerTurn = 2;
+/// Solutions of the equilibrium in one turn. Fewer would make bridges that are blended into the pattern sooner, but
+/// every turn also costs an abstract graph, a model and a resynthesis.
+constexpr int kSolutionsPerTurn = 4;
+
+/// A turn has gained when the highest score or the 99th percentile is this much below the best so far.
+constexpr double kGain = 0.95;
+constexpr int kTurnsWithoutGain = 2;
 
 template <class T>
 void check_range(const char* name, T value, T least, T most) {
@@ -64,6 +68,21 @@ bool is_self_weight_alone(const ForceProfile& profile) {
 
 }  // namespace
 
+/// Whether stress bridges are still worth their material.
+struct StressProgress {
+    bool budget_spent = false;  ///< a bridge did not fit any more
+    double best_max_pa = std::numeric_limits<double>::infinity();
+    double best_p99_pa = std::numeric_limits<double>::infinity();
+    int turns_without_gain = 0;
+
+    void take(const ReinforceRecord& record) {
+        const bool gain = record.max_score_pa < kGain * best_max_pa || record.p99_score_pa < kGain * best_p99_pa;
+        turns_without_gain = gain ? 0 : turns_without_gain + 1;
+        best_max_pa = std::min(best_max_pa, record.max_score_pa);
+        best_p99_pa = std::min(best_p99_pa, record.p99_score_pa);
+    }
+};
+
 struct StructuralOptimizer::Impl {
     const SurfaceVoxels& shell;
     const ForceProfile& profile;
@@ -79,6 +98,7 @@ struct StructuralOptimizer::Impl {
     int iteration = 0;
     double frozen_median_pa = -1.0;  ///< negative until the first connected pattern was solved
     std::size_t voxels_left = 0;     ///< of the material budget
+    StressProgress progress;
 
     Impl(const SurfaceVoxels& shell_in, const ForceProfile& profile_in, const Material& material_in,
          const ReinforceSettings& settings_in, std::vector<std::uint8_t> keep_in)
@@ -113,6 +133,7 @@ struct StructuralOptimizer::Impl::Outcome {
     bool asks_for_resynthesis = false;
     double frozen_median_pa = -1.0;
     std::size_t voxels_left = 0;
+    StressProgress progress;
     std::string stopped_by = "limits met";
 };
 
@@ -183,17 +204,23 @@ void StructuralOptimizer::Impl::reinforce(SolidStates& state, Outcome& outcome, 
     ReinforcementTurn turn(context, painter, state, run);
     turn.take_stock(run);
     if (outcome.frozen_median_pa < 0.0) outcome.frozen_median_pa = turn.record().median_score_pa;
+    outcome.progress.take(turn.record());
     const double limit = limit_pa(outcome.frozen_median_pa);
-    const bool met = turn.stress_within_budget(limit, kSolutionsPerTurn, outcome.voxels_left, run);
+    const bool met = turn.record().max_score_pa <= limit;
+    const bool hopeless = outcome.progress.turns_without_gain >= kTurnsWithoutGain;
+    const bool spent = outcome.progress.budget_spent;
+    if (!met && !hopeless && !spent) turn.stress_within_budget(limit, kSolutionsPerTurn, outcome.voxels_left, run);
     // The geodesic criterion looks at what the first one leaves when it is done.
-    if ((met || turn.out_of_candidates()) && settings.geodesic_factor > 0.0) turn.geodesics(outcome.voxels_left, run);
+    const bool stress_is_done = turn.bridges() == 0 && !turn.out_of_budget() && !spent;
+    if (stress_is_done && settings.geodesic_factor > 0.0) turn.geodesics(outcome.voxels_left, run);
+    outcome.progress.budget_spent = spent || turn.out_of_budget();
     merge_record(turn.record(), outcome.record);
     outcome.covered.insert(outcome.covered.end(), turn.covered().begin(), turn.covered().end());
     outcome.asks_for_resynthesis = outcome.asks_for_resynthesis || turn.bridges() > 0;
-    if (turn.out_of_budget())
+    if (outcome.progress.budget_spent)
         outcome.stopped_by = "budget";
     else if (!met)
-        outcome.stopped_by = "no candidate";
+        outcome.stopped_by = hopeless ? "no gain" : "no candidate";
 }
 
 void StructuralOptimizer::Impl::commit(const SolidStates& before, const SolidStates& after, const Outcome& outcome,
@@ -211,6 +238,7 @@ void StructuralOptimizer::Impl::commit(const SolidStates& before, const SolidSta
     iteration = outcome.record.iteration;
     frozen_median_pa = outcome.frozen_median_pa;
     voxels_left = outcome.voxels_left;
+    progress = outcome.progress;
 }
 
 StructuralOptimizer::StructuralOptimizer(const SurfaceVoxels& shell, const ForceProfile& profile,
@@ -240,6 +268,7 @@ ReinforceStep StructuralOptimizer::step(const SolidStates& solid, const RunContr
     Impl::Outcome outcome;
     outcome.frozen_median_pa = self.frozen_median_pa;
     outcome.voxels_left = self.voxels_left;
+    outcome.progress = self.progress;
     outcome.record.iteration = self.iteration + 1;
     outcome.record.allowable_pa = self.allowable_pa();
 

@@ -50,7 +50,8 @@ struct ReinforceRecord {
     double max_geodesic = 0.0;  ///< in extents
     double allowable_pa = 0.0;
     bool connected = false;  ///< one piece per component of the input
-    std::string stopped_by;  ///< empty while going on; else "limits met", "budget", "iterations", "no candidate"
+    std::string
+        stopped_by;  ///< empty while going on; else "limits met", "budget", "iterations", "no candidate", "no gain"
 };
 
 struct ReinforceStep {

@@ -93,10 +93,13 @@ TEST_CASE("structural optimizer: always ends, always in one piece per component"
     const auto rules = GENERATE(ReinforceRules::kDefault, ReinforceRules::kPaper);
     const auto seed = GENERATE(range(1u, 3u));
     for (const Model& model : models()) {
-        const SurfaceVoxels shell = voxelize(model.mesh, {.resolution = 36});
+        const SurfaceVoxels shell = voxelize(model.mesh, {.resolution = 32});
+        // As printed means gravity alone: under handling loads the printed rules fill half of the shell.
+        const ForceProfile profile =
+            rules == ReinforceRules::kPaper ? ForceProfile{{gravity_case(shell, -Vec3::UnitZ())}} : use_of(shell);
         for (const auto& [name, solid] : patterns(shell, seed)) {
             CAPTURE(model.name, name, seed, rules == ReinforceRules::kPaper);
-            const Run run = run_to_the_end(shell, solid, use_of(shell), small_settings(rules));
+            const Run run = run_to_the_end(shell, solid, profile, small_settings(rules));
             REQUIRE(run.done);
             CHECK(run.records.size() <= 6);
             CHECK(run.records.back().connected);
