@@ -40,7 +40,9 @@ struct PyramidLevel {
 };
 
 /// levels[0] has the entries of the shell in the same order. A coarser cell is split into as many
-/// entries as its children fall into connected groups, so that sheets stay apart on every level.
+/// entries as its children fall into connected groups, so that sheets stay apart on every level. Positions
+/// and normals of a coarser level are means over the children, weighted by the surface they enclose; its
+/// entries are adjacent when children are, or around a common neighbour as in the shell.
 struct VoxelPyramid {
     std::vector<PyramidLevel> levels;
 };
