@@ -65,7 +65,7 @@ struct BoxTree::Impl {
     [[nodiscard]] Vec3 to_tree(const Vec3& p_mm) const { return (p_mm - center_mm) * scale; }
 };
 
-BoxTree::BoxTree(std::span<const Box> boxes) : impl_(std::make_unique<Impl>()) {
+BoxTree::BoxTree(std::span<const Box> boxes, const RunControl& run) : impl_(std::make_unique<Impl>()) {
     Impl& tree = *impl_;
     tree.count = static_cast<std::uint32_t>(boxes.size());
     if (boxes.empty()) return;
@@ -108,9 +108,15 @@ BoxTree::BoxTree(std::span<const Box> boxes) : impl_(std::make_unique<Impl>()) {
     rtcSetSceneFlags(tree.scene, RTC_SCENE_FLAG_ROBUST);
     rtcAttachGeometry(tree.scene, geometry);
     rtcReleaseGeometry(geometry);
+    RunControl stop = run;
+    rtcSetSceneProgressMonitorFunction(
+        tree.scene, [](void* self, double) { return !static_cast<const RunControl*>(self)->stop_requested(); }, &stop);
     rtcCommitScene(tree.scene);
+    rtcSetSceneProgressMonitorFunction(tree.scene, nullptr, nullptr);
     tree.boxes = {};
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
+    const RTCError error = rtcGetDeviceError(device);  // asked for in any case: asking clears it
+    run.throw_if_stopped();
+    if (error != RTC_ERROR_NONE)
         throw SolverFailure("box tree: Embree error " + std::to_string(error) + " for " + std::to_string(tree.count) +
                             " boxes");
 }

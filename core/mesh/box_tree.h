@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "core/base/run_control.h"
 #include "core/base/vec.h"
 
 namespace fretwork {
@@ -16,11 +17,12 @@ struct Box {
 /// A tree over boxes, built and walked by Embree in float. Boxes are grown and queries widened by more than float's
 /// rounding, so that no box that qualifies in exact arithmetic is left out; some that do not may be visited as well.
 /// The caller decides each candidate in double. The order of visits is unspecified. Queries are const and thread-safe.
-/// Cost  about 0.15 s and 150 bytes per box for a million boxes; a query around a microsecond plus its visits.
+/// Cost  about 0.7 s and 150 MB for a million boxes; a query around a microsecond plus its visits.
 class BoxTree {
   public:
     /// Boxes are named by their place in `boxes`, which is not kept. All coordinates must be finite.
-    explicit BoxTree(std::span<const Box> boxes);
+    /// \throws Cancelled  `run` asked to stop.
+    explicit BoxTree(std::span<const Box> boxes, const RunControl& run = {});
     ~BoxTree();
     BoxTree(BoxTree&&) noexcept;
     BoxTree& operator=(BoxTree&&) noexcept;

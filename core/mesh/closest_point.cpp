@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "core/base/parallel.h"
 #include "core/mesh/box_tree.h"
@@ -15,9 +16,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-struct Corners {
-    Vec3 a, b, c;
-};
+using Corners = WindingTree::Corners;
 
 std::vector<Corners> corners_of(const TriangleMesh& mesh) {
     check_mesh(mesh, "surface tree", ZeroArea::kAllowed);
@@ -37,8 +36,8 @@ std::vector<Box> boxes_of(const std::vector<Corners>& corners) {
 }
 
 /// Every edge is run as often one way as the other: then a ray counts the winding number exactly.
-bool bounds_a_volume(const TriangleMesh& mesh) {
-    const EdgeTable edges(mesh);
+bool bounds_a_volume(const TriangleMesh& mesh, const RunControl& run) {
+    const EdgeTable edges(mesh, run);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         int sum = 0;
         for (const HalfEdge h : edges.half_edges(e)) sum += runs_up(mesh, h) ? 1 : -1;
@@ -50,8 +49,8 @@ bool bounds_a_volume(const TriangleMesh& mesh) {
 }  // namespace
 
 struct SurfaceTree::Impl {
-    explicit Impl(const TriangleMesh& mesh)
-        : corners(corners_of(mesh)), tree(boxes_of(corners)), winding(mesh), closed(bounds_a_volume(mesh)) {
+    Impl(const TriangleMesh& mesh, const RunControl& run)
+        : corners(corners_of(mesh)), tree(boxes_of(corners), run), closed(bounds_a_volume(mesh, run)) {
         min_mm = max_mm = corners[0].a;
         for (const Corners& t : corners) {
             min_mm = min_mm.cwiseMin(t.a).cwiseMin(t.b).cwiseMin(t.c);
@@ -102,12 +101,21 @@ struct SurfaceTree::Impl {
 
     std::vector<Corners> corners;
     BoxTree tree;
-    WindingTree winding;
     bool closed;
     Vec3 min_mm, max_mm;
+
+    /// Made when first asked for: few callers need it.
+    [[nodiscard]] const WindingTree& winding() const {
+        std::call_once(winding_once_, [this] { winding_.emplace(corners); });
+        return *winding_;
+    }
+
+  private:
+    mutable std::once_flag winding_once_;
+    mutable std::optional<WindingTree> winding_;
 };
 
-SurfaceTree::SurfaceTree(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>(mesh)) {}
+SurfaceTree::SurfaceTree(const TriangleMesh& mesh, const RunControl& run) : impl_(std::make_unique<Impl>(mesh, run)) {}
 SurfaceTree::~SurfaceTree() = default;
 SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;
 SurfaceTree& SurfaceTree::operator=(SurfaceTree&&) noexcept = default;
@@ -161,7 +169,7 @@ void SurfaceTree::all_hits(const Vec3& from_mm, const Vec3& to_mm, std::vector<S
 }
 
 double SurfaceTree::winding_number(const Vec3& point_mm) const {
-    return impl_->winding.at(point_mm);
+    return impl_->winding().at(point_mm);
 }
 
 bool SurfaceTree::inside(const Vec3& point_mm) const {

@@ -19,8 +19,8 @@ void check_indices(const TriangleMesh& mesh) {
                                    ", but the mesh has " + std::to_string(mesh.positions_mm.size()) + " vertices");
 }
 
-void join_over_edges(const TriangleMesh& mesh, DisjointSets& sets) {
-    const EdgeTable edges(mesh);
+void join_over_edges(const TriangleMesh& mesh, DisjointSets& sets, const RunControl& run) {
+    const EdgeTable edges(mesh, run);
     for (std::size_t e = 0; e < edges.size(); ++e)
         for (const HalfEdge h : edges.half_edges(e)) sets.unite(edges.half_edges(e)[0] / 3, h / 3);
 }
@@ -37,11 +37,11 @@ void join_over_vertices(const TriangleMesh& mesh, DisjointSets& sets) {
 
 }  // namespace
 
-MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by) {
+MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by, const RunControl& run) {
     check_indices(mesh);
     DisjointSets sets(mesh.triangles.size());
     if (by == ConnectedBy::kEdge)
-        join_over_edges(mesh, sets);
+        join_over_edges(mesh, sets, run);
     else
         join_over_vertices(mesh, sets);
     MeshComponents components;

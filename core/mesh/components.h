@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/run_control.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace fretwork {
@@ -20,7 +21,9 @@ struct MeshComponents {
 
 /// Vertices are told apart by index: weld a soup first. Cost linear.
 /// \throws InvalidInput  an index past the end.
-MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by = ConnectedBy::kEdge);
+/// \throws Cancelled     `run` asked to stop.
+MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by = ConnectedBy::kEdge,
+                               const RunControl& run = {});
 
 struct ComponentMesh {
     TriangleMesh mesh;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/run_control.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace fretwork {
@@ -22,8 +23,8 @@ using HalfEdge = std::uint32_t;
 /// Cost  linear; 24 bytes per half-edge while building.
 class EdgeTable {
   public:
-    /// Indices must be in range.
-    explicit EdgeTable(const TriangleMesh& mesh);
+    /// Indices must be in range. \throws Cancelled  `run` asked to stop.
+    explicit EdgeTable(const TriangleMesh& mesh, const RunControl& run = {});
 
     [[nodiscard]] std::size_t size() const { return low_.size(); }
     [[nodiscard]] std::uint32_t low(std::size_t edge) const { return low_[edge]; }

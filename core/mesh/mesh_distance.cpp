@@ -44,8 +44,7 @@ std::vector<Vec3> sample(const TriangleMesh& mesh, std::size_t count, std::uint6
 
 OneSidedDistance one_sided(const TriangleMesh& from, const TriangleMesh& to, const MeshDistanceSettings& settings,
                            const RunControl& run) {
-    const SurfaceTree tree(to);
-    run.throw_if_stopped();
+    const SurfaceTree tree(to, run);
     std::vector<Vec3> points = sample(from, settings.samples, settings.seed);
     std::vector<std::uint8_t> used(from.positions_mm.size(), 0);
     for (const Triangle& t : from.triangles)

@@ -79,11 +79,11 @@ MeshReport report_mesh(const TriangleMesh& mesh, CountSelfIntersections count, c
     MeshReport report;
     measure(mesh, report);
     run.throw_if_stopped();
-    const EdgeTable edges(mesh);
+    const EdgeTable edges(mesh, run);
     count_edges(mesh, edges, report);
     run.throw_if_stopped();
     report.non_manifold_vertices = count_split_vertices(mesh, edges);
-    report.components = find_components(mesh).count;
+    report.components = find_components(mesh, ConnectedBy::kEdge, run).count;
     run.throw_if_stopped();
     report.duplicate_triangles = count_duplicates(mesh);
     if (count == CountSelfIntersections::kYes) {

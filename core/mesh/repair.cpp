@@ -21,10 +21,10 @@ double longest_side(const TriangleMesh& mesh) {
     return (high - low).maxCoeff();
 }
 
-void count_what_is_left(const TriangleMesh& mesh, RepairCounts& counts) {
-    const MeshComponents components = find_components(mesh);
+void count_what_is_left(const TriangleMesh& mesh, RepairCounts& counts, const RunControl& run) {
+    const MeshComponents components = find_components(mesh, ConnectedBy::kEdge, run);
     std::vector<std::uint8_t> open(components.count, 0);
-    const EdgeTable edges(mesh);
+    const EdgeTable edges(mesh, run);
     for (std::size_t e = 0; e < edges.size(); ++e)
         if (edges.half_edges(e).size() == 1) {
             ++counts.border_edges;
@@ -46,7 +46,7 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairSettings& setting
                              "; expected a length of at least 0 mm");
     check_mesh(mesh, "repair");
     const double extent = longest_side(mesh);
-    repair::Draft draft{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), {}};
+    repair::Draft draft{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), {}, run};
     for (std::uint32_t t = 0; t < draft.source.size(); ++t) draft.source[t] = t;
 
     run.checkpoint("repair", 0.0);
@@ -66,7 +66,7 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairSettings& setting
     repair::separate_sheets(draft, std::move(mates));
     run.checkpoint("repair", 0.8);
     repair::turn_outward(draft);
-    count_what_is_left(draft.mesh, draft.counts);
+    count_what_is_left(draft.mesh, draft.counts, run);
     run.checkpoint("repair", 1.0);
     return {std::move(draft.mesh), std::move(draft.source), draft.counts};
 }

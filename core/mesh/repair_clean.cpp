@@ -29,7 +29,7 @@ class FlatPass {
     explicit FlatPass(Draft& draft)
         : draft_(draft),
           mesh_(draft.mesh),
-          edges_(mesh_),
+          edges_(mesh_, draft.run),
           edge_of_(3 * mesh_.triangles.size()),
           touched_(mesh_.triangles.size(), 0),
           drop_(mesh_.triangles.size(), 0),
@@ -108,10 +108,12 @@ void drop_collapsed(Draft& draft) {
     drop_triangles(draft, drop);
 }
 
-std::vector<std::uint32_t> flat_triangles(const TriangleMesh& mesh) {
+std::vector<std::uint32_t> flat_triangles(const TriangleMesh& mesh, const RunControl& run) {
     std::vector<std::uint32_t> found;
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (t % kOften == 0) run.throw_if_stopped();
         if (flat(mesh, mesh.triangles[t])) found.push_back(t);
+    }
     return found;
 }
 
@@ -147,8 +149,9 @@ void mark_copies(std::span<const Copy> copies, std::vector<std::uint8_t>& drop, 
 
 /// Two-sided patches between which and the rest every border edge has an even number of other triangles: with the
 /// patch gone these still close the surface, so the patch is a wall inside the material.
-std::vector<std::uint8_t> inner_walls(const TriangleMesh& mesh, const std::vector<std::uint8_t>& two_sided) {
-    const EdgeTable edges(mesh);
+std::vector<std::uint8_t> inner_walls(const TriangleMesh& mesh, const std::vector<std::uint8_t>& two_sided,
+                                      const RunControl& run) {
+    const EdgeTable edges(mesh, run);
     DisjointSets patches(mesh.triangles.size());
     for (std::size_t e = 0; e < edges.size(); ++e) {
         const auto h = edges.half_edges(e);
@@ -173,11 +176,11 @@ std::vector<std::uint8_t> inner_walls(const TriangleMesh& mesh, const std::vecto
 
 void drop_degenerate(Draft& draft) {
     drop_collapsed(draft);
-    std::vector<std::uint32_t> found = flat_triangles(draft.mesh);
+    std::vector<std::uint32_t> found = flat_triangles(draft.mesh, draft.run);
     for (int pass = 0; pass < kMostPasses && !found.empty(); ++pass) {
         FlatPass(draft).run(found);
         drop_collapsed(draft);
-        found = flat_triangles(draft.mesh);
+        found = flat_triangles(draft.mesh, draft.run);
     }
     std::vector<std::uint8_t> drop(draft.mesh.triangles.size(), 0);
     for (const std::uint32_t t : found) drop[t] = 1;
@@ -207,7 +210,7 @@ void drop_duplicates(Draft& draft) {
     two_sided.resize(kept);
     drop_triangles(draft, drop);
 
-    const std::vector<std::uint8_t> wall = inner_walls(draft.mesh, two_sided);
+    const std::vector<std::uint8_t> wall = inner_walls(draft.mesh, two_sided, draft.run);
     const auto walls = static_cast<std::size_t>(std::count(wall.begin(), wall.end(), 1));
     if (walls == wall.size()) return;
     draft.counts.inner_wall_triangles += 2 * walls;

@@ -62,7 +62,7 @@ double area_of(const TriangleMesh& mesh, const Triangle& t) {
 
 void agree_on_turn(Draft& draft) {
     TriangleMesh& mesh = draft.mesh;
-    const EdgeTable edges(mesh);
+    const EdgeTable edges(mesh, draft.run);
     std::vector<HalfEdge> across(3 * mesh.triangles.size(), kNoMate);
     for (std::size_t e = 0; e < edges.size(); ++e)
         if (const auto h = edges.half_edges(e); h.size() == 2) across[h[0]] = h[1], across[h[1]] = h[0];
@@ -70,11 +70,13 @@ void agree_on_turn(Draft& draft) {
     std::vector<std::uint8_t> seen(mesh.triangles.size(), 0), turn(mesh.triangles.size(), 0);
     std::vector<std::uint32_t> patch;
     for (std::uint32_t first = 0; first < mesh.triangles.size(); ++first) {
+        if (first % kOften == 0) draft.run.throw_if_stopped();
         if (seen[first] != 0) continue;
         patch.assign(1, first);
         seen[first] = 1;
         double as_given = 0.0, turned = 0.0;
         for (std::size_t i = 0; i < patch.size(); ++i) {
+            if (i % kOften == 0) draft.run.throw_if_stopped();
             const std::uint32_t t = patch[i];
             (turn[t] == 0 ? as_given : turned) += area_of(mesh, mesh.triangles[t]);
             for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
@@ -97,10 +99,11 @@ void agree_on_turn(Draft& draft) {
 
 std::vector<HalfEdge> glue_half_edges(Draft& draft) {
     const TriangleMesh& mesh = draft.mesh;
-    const EdgeTable edges(mesh);
+    const EdgeTable edges(mesh, draft.run);
     std::vector<HalfEdge> mates(3 * mesh.triangles.size(), kNoMate);
     std::vector<Sheet> sheets;
     for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (e % kOften == 0) draft.run.throw_if_stopped();
         const auto h = edges.half_edges(e);
         if (h.size() == 2) {
             if (runs_up(mesh, h[0]) != runs_up(mesh, h[1]))

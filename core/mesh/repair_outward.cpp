@@ -20,9 +20,10 @@ struct Piece {
     std::uint32_t outermost = 0;  ///< the piece that holds it and is held by none; itself where there is none
 };
 
-std::vector<Piece> measure_pieces(const TriangleMesh& mesh, const MeshComponents& components) {
+std::vector<Piece> measure_pieces(const TriangleMesh& mesh, const MeshComponents& components, const RunControl& run) {
     std::vector<Piece> pieces(components.count);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (t % kOften == 0) run.throw_if_stopped();
         Piece& piece = pieces[components.of_triangle[t]];
         const Triangle& corners = mesh.triangles[t];
         piece.triangles.push_back(t);
@@ -36,7 +37,7 @@ std::vector<Piece> measure_pieces(const TriangleMesh& mesh, const MeshComponents
                 .dot((mesh.positions_mm[corners[1]] - origin).cross(mesh.positions_mm[corners[2]] - origin)) /
             6.0;
     }
-    const EdgeTable edges(mesh);
+    const EdgeTable edges(mesh, run);
     for (std::size_t e = 0; e < edges.size(); ++e)
         if (edges.half_edges(e).size() == 1) pieces[components.of_triangle[edges.half_edges(e)[0] / 3]].closed = false;
     return pieces;
@@ -49,8 +50,9 @@ bool box_holds(const Piece& outer, const Piece& inner) {
 /// Which closed pieces hold which, by rays from a few triangles each; most of the rays decide.
 class Nesting {
   public:
-    Nesting(const TriangleMesh& mesh, const MeshComponents& components, const std::vector<Piece>& pieces)
-        : mesh_(mesh), components_(components), pieces_(pieces), tree_(mesh) {
+    Nesting(const TriangleMesh& mesh, const MeshComponents& components, const std::vector<Piece>& pieces,
+            const RunControl& run)
+        : mesh_(mesh), components_(components), pieces_(pieces), tree_(mesh, run) {
         Vec3 low = pieces[0].min_mm, high = pieces[0].max_mm;
         for (const Piece& piece : pieces) low = low.cwiseMin(piece.min_mm), high = high.cwiseMax(piece.max_mm);
         beyond_ = 1.5 * (high - low).norm() * Vec3(0.3183098862, 0.8414709848, 0.4342944819).normalized();
@@ -85,13 +87,16 @@ class Nesting {
     Vec3 beyond_;
 };
 
-void find_outermost(const TriangleMesh& mesh, const MeshComponents& components, std::vector<Piece>& pieces) {
+void find_outermost(const TriangleMesh& mesh, const MeshComponents& components, std::vector<Piece>& pieces,
+                    const RunControl& run) {
     for (std::uint32_t i = 0; i < pieces.size(); ++i) pieces[i].outermost = i;
     if (std::count_if(pieces.begin(), pieces.end(), [](const Piece& p) { return p.closed; }) < 2) return;
-    const Nesting nesting(mesh, components, pieces);
+    const Nesting nesting(mesh, components, pieces, run);
     std::vector<std::vector<std::uint32_t>> holders(pieces.size());
-    for (std::uint32_t i = 0; i < pieces.size(); ++i)
+    for (std::uint32_t i = 0; i < pieces.size(); ++i) {
+        if (i % 256 == 0) run.throw_if_stopped();
         if (pieces[i].closed) holders[i] = nesting.holders(i);
+    }
     for (std::uint32_t i = 0; i < pieces.size(); ++i)
         for (const std::uint32_t j : holders[i])
             if (holders[j].empty()) {
@@ -103,9 +108,9 @@ void find_outermost(const TriangleMesh& mesh, const MeshComponents& components, 
 }  // namespace
 
 void turn_outward(Draft& draft) {
-    const MeshComponents components = find_components(draft.mesh);
-    std::vector<Piece> pieces = measure_pieces(draft.mesh, components);
-    find_outermost(draft.mesh, components, pieces);
+    const MeshComponents components = find_components(draft.mesh, ConnectedBy::kEdge, draft.run);
+    std::vector<Piece> pieces = measure_pieces(draft.mesh, components, draft.run);
+    find_outermost(draft.mesh, components, pieces, draft.run);
     for (const Piece& piece : pieces) {
         if (!piece.closed || !(pieces[piece.outermost].volume_mm3 < 0.0)) continue;
         ++draft.counts.inverted_components;

@@ -10,11 +10,13 @@ namespace {
 void split_fans(Draft& draft, const std::vector<HalfEdge>& mates) {
     TriangleMesh& mesh = draft.mesh;
     DisjointSets fans(mates.size());  // corner c = the half-edge that starts there
-    for (HalfEdge h = 0; h < mates.size(); ++h)
+    for (HalfEdge h = 0; h < mates.size(); ++h) {
+        if (h % kOften == 0) draft.run.throw_if_stopped();
         if (const HalfEdge g = mates[h]; g != kNoMate && h < g) {
             fans.unite(h, next_in_triangle(g));
             fans.unite(next_in_triangle(h), g);
         }
+    }
     std::vector<std::uint8_t> taken(mesh.positions_mm.size(), 0);
     std::vector<std::uint32_t> vertex_of(mates.size());
     for (HalfEdge c = 0; c < mates.size(); ++c) {
@@ -47,7 +49,7 @@ class EdgeSplitter {
 
   private:
     bool pass() {
-        const EdgeTable edges(draft_.mesh);
+        const EdgeTable edges(draft_.mesh, draft_.run);
         std::vector<std::uint8_t> touched(draft_.mesh.triangles.size(), 0);
         bool again = false;
         for (std::size_t e = 0; e < edges.size(); ++e) {

@@ -17,7 +17,11 @@ struct Draft {
     TriangleMesh mesh;
     std::vector<std::uint32_t> source;  ///< triangle of the input
     RepairCounts counts;
+    RunControl run;
 };
+
+/// Items between two looks at the stop request.
+inline constexpr std::uint32_t kOften = 1u << 16;
 
 /// Vertices of one position become one; those without a triangle go.
 void weld_equal_positions(Draft& draft);

@@ -29,10 +29,11 @@ std::uint64_t hash_of(const Vec3& p) {
 
 /// For each vertex the first one at the same position. The table is only ever asked, never listed, so its layout
 /// does not show.
-std::vector<std::uint32_t> first_at_position(const std::vector<Vec3>& positions) {
+std::vector<std::uint32_t> first_at_position(const std::vector<Vec3>& positions, const RunControl& run) {
     const std::size_t mask = std::bit_ceil(2 * positions.size() + 1) - 1;
     std::vector<std::uint32_t> table(mask + 1, kNone), first(positions.size());
     for (std::uint32_t v = 0; v < positions.size(); ++v) {
+        if (v % kOften == 0) run.throw_if_stopped();
         std::size_t slot = hash_of(positions[v]) & mask;
         while (table[slot] != kNone && positions[table[slot]] != positions[v]) slot = (slot + 1) & mask;
         if (table[slot] == kNone) table[slot] = v;
@@ -92,7 +93,7 @@ void weld_equal_positions(Draft& draft) {
     std::vector<std::uint8_t> used(before, 0);
     for (const Triangle& t : draft.mesh.triangles)
         for (const std::uint32_t v : t) used[v] = 1;
-    const std::vector<std::uint32_t> first = first_at_position(draft.mesh.positions_mm);
+    const std::vector<std::uint32_t> first = first_at_position(draft.mesh.positions_mm, draft.run);
     for (std::size_t v = 0; v < before; ++v) {
         if (used[v] == 0)
             ++draft.counts.unused_vertices;
@@ -106,7 +107,7 @@ void weld_borders(Draft& draft, double reach_mm) {
     const std::vector<Vec3>& positions = draft.mesh.positions_mm;
     std::vector<std::uint8_t> border(positions.size(), 0);
     bool any = false;
-    const EdgeTable edges(draft.mesh);
+    const EdgeTable edges(draft.mesh, draft.run);
     for (std::size_t e = 0; e < edges.size(); ++e)
         if (edges.half_edges(e).size() == 1) border[edges.low(e)] = border[edges.high(e)] = 1, any = true;
     if (!any) return;
@@ -116,6 +117,7 @@ void weld_borders(Draft& draft, double reach_mm) {
     ReachGrid grid(positions, low, reach_mm);
     std::vector<std::uint32_t> target(positions.size());
     for (std::uint32_t v = 0; v < positions.size(); ++v) {
+        if (v % kOften == 0) draft.run.throw_if_stopped();
         target[v] = v;
         if (border[v] == 0) continue;
         if (const std::uint32_t w = grid.closest(v); w != kNone) {

@@ -32,18 +32,16 @@ double solid_angle_share(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-WindingTree::WindingTree(const TriangleMesh& mesh) {
-    Vec3 low = mesh.positions_mm[mesh.triangles[0][0]], high = low;
-    for (const Triangle& t : mesh.triangles)
-        for (const std::uint32_t v : t) {
-            low = low.cwiseMin(mesh.positions_mm[v]);
-            high = high.cwiseMax(mesh.positions_mm[v]);
-        }
+WindingTree::WindingTree(std::vector<Corners> triangles) {
+    Vec3 low = triangles[0].a, high = low;
+    for (const Corners& t : triangles) {
+        low = low.cwiseMin(t.a).cwiseMin(t.b).cwiseMin(t.c);
+        high = high.cwiseMax(t.a).cwiseMax(t.b).cwiseMax(t.c);
+    }
     const double step = std::max((high - low).maxCoeff(), 1e-300) / 0x1fffff;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(mesh.triangles.size());
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(triangles.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) {
-        const Triangle& t = mesh.triangles[i];
-        const Vec3 middle = (mesh.positions_mm[t[0]] + mesh.positions_mm[t[1]] + mesh.positions_mm[t[2]]) / 3.0;
+        const Vec3 middle = (triangles[i].a + triangles[i].b + triangles[i].c) / 3.0;
         std::uint64_t key = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const double cell = std::clamp((middle[axis] - low[axis]) / step, 0.0, double{0x1fffff});
@@ -53,10 +51,7 @@ WindingTree::WindingTree(const TriangleMesh& mesh) {
     }
     std::sort(order.begin(), order.end());
     triangles_.reserve(order.size());
-    for (const auto& [key, i] : order) {
-        const Triangle& t = mesh.triangles[i];
-        triangles_.push_back({mesh.positions_mm[t[0]], mesh.positions_mm[t[1]], mesh.positions_mm[t[2]]});
-    }
+    for (const auto& [key, i] : order) triangles_.push_back(triangles[i]);
     groups_.reserve(order.size() / 2);
     build(0, static_cast<std::uint32_t>(triangles_.size()));
 }

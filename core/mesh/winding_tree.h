@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/mesh/triangle_mesh.h"
+#include "core/base/vec.h"
 
 namespace fretwork {
 
@@ -14,13 +14,14 @@ namespace fretwork {
 /// than twice its radius away. Error below 0.01, usually 0.001; cost grows with the logarithm of the size.
 class WindingTree {
   public:
-    explicit WindingTree(const TriangleMesh& mesh);
-    [[nodiscard]] double at(const Vec3& point_mm) const;
-
-  private:
     struct Corners {
         Vec3 a, b, c;
     };
+    /// \param triangles  at least one
+    explicit WindingTree(std::vector<Corners> triangles);
+    [[nodiscard]] double at(const Vec3& point_mm) const;
+
+  private:
     struct Group {
         Vec3 center;
         // Moments over the group's surface of the area vector n and the offset d from the centre.
