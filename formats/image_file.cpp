@@ -14,7 +14,7 @@ namespace {
 std::string_view other_format(std::string_view bytes) {
     if (bytes.starts_with("GIF8")) return "a GIF";
     if (bytes.starts_with("BM")) return "a BMP";
-    if (bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return "a WebP";
+    if (bytes.starts_with("RIFF") && bytes.size() >= 12 && bytes.substr(8, 4) == "WEBP") return "a WebP";
     if (bytes.starts_with(std::string_view("II*\0", 4)) || bytes.starts_with(std::string_view("MM\0*", 4)))
         return "a TIFF";
     if (bytes.starts_with("<svg") || bytes.starts_with("<?xml")) return "an SVG or other XML";

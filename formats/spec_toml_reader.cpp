@@ -1,13 +1,27 @@
 #include "formats/spec_toml_reader.h"
 
-#define TOML_EXCEPTIONS 1
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "core/base/error.h"
+
+namespace {
+/// What toml++ 3.3 takes for granted about its input without having looked, as after "[ =".
+struct TomlSurprise {};
+
+constexpr void check_toml(bool as_expected) {
+    if (!as_expected) throw TomlSurprise();
+}
+}  // namespace
+
+// With NDEBUG the library would turn these assertions into promises to the compiler: undefined behaviour
+// on a hostile text. Here they end the parse.
+#undef NDEBUG
+#define TOML_EXCEPTIONS 1
+#define TOML_ASSERT(expression) check_toml(static_cast<bool>(expression))
+#include <toml++/toml.h>
+
 #include "formats/read_file.h"
 
 namespace fretwork {
@@ -113,6 +127,8 @@ SpecDocument read_spec_toml(std::string_view text, std::string_view source) {
         return flattener.flatten(toml::parse(text, source));
     } catch (const toml::parse_error& error) {
         throw InvalidSetting(flattener.place_of(error.source().begin) + ": " + std::string(error.description()));
+    } catch (const TomlSurprise&) {
+        throw InvalidSetting(std::string(source) + ": found a key or table header without a name, expected one");
     }
 }
 

@@ -177,6 +177,8 @@ TEST_CASE("pictures: what cannot be read is named", "[formats][errors]") {
     CHECK_THROWS_WITH(read_image("GIF89a...", "a.gif"), Catch::Contains("a GIF") && Catch::Contains("PNG or JPEG"));
     CHECK_THROWS_WITH(read_image("<svg/>", "a.svg"), Catch::Contains("SVG"));
     CHECK_THROWS_AS(read_image(std::string("\0\1\2", 3), "a"), InvalidInput);
+    CHECK_THROWS_AS(read_image("RIFF.", "a"), InvalidInput);
+    CHECK_THROWS_WITH(read_image("RIFF....WEBP", "a"), Catch::Contains("WebP"));
     CHECK_THROWS_WITH(read_image(png, "a.png", {.max_side_px = 39}), Catch::Contains("40 x 30"));
     CHECK_THROWS_WITH(read_image(png, "a.png", {.max_pixels = 1199}), Catch::Contains("40 x 30"));
     const std::string jpeg = make_jpeg(8, 8, JpegKind::kGrey, flat({77}, 64));

@@ -105,6 +105,7 @@ TEST_CASE("spec: what cannot be read is named with its place", "[formats][errors
         {std::string(2 << 20, '#'), "1 MiB"},
         {"a = 1 \xFF\n", "line 1"},
         {"a = " + std::string(5000, '['), "line 1"},
+        {"a = 1\n[ = 1e3,", "without a name"},
     };
     for (const Row& row : rows) {
         CAPTURE(row.text.substr(0, 60));
