@@ -274,11 +274,11 @@ void add_structure(std::vector<SettingInfo>& t) {
     t.push_back(row("structure.material", FIELD(structure.material), "1", {},
                     "What it is printed from: PLA, PETG, ABS, PA12 or resin."));
     t.push_back(row("structure.youngs_modulus_mpa", FIELD(structure.youngs_modulus_mpa), "MPa", above(0, 1e6),
-                    "Stiffness.", "from structure.material"));
+                    "Stiffness (Young's modulus).", "from structure.material"));
     t.push_back(row("structure.poissons_ratio", FIELD(structure.poissons_ratio), "1", between(0, 0.49),
                     "Poisson's ratio.", "from structure.material"));
-    t.push_back(row("structure.density_kg_m3", FIELD(structure.density_kg_m3), "kg/m3", above(0, 30000), "Density.",
-                    "from structure.material"));
+    t.push_back(row("structure.density_kg_m3", FIELD(structure.density_kg_m3), "kg/m3", above(0, 30000),
+                    "Weight per volume of the material.", "from structure.material"));
     t.push_back(row("structure.strength_mpa", FIELD(structure.strength_mpa), "MPa", above(0, 1e4),
                     "Strength across the printed layers.", "from structure.material"));
     t.push_back(row("structure.safety_factor", FIELD(structure.steps.safety_factor), "1", between(1, 100),

@@ -30,8 +30,7 @@ TEST_CASE("spec files: every key survives TOML", "[formats][spec]") {
     for (const SettingInfo& info : all_settings())
         for (const SettingValue& value : testing::good_values(info)) {
             CAPTURE(info.key, setting_text(value));
-            Settings settings;
-            apply_setting(settings, {info.key, value, ""});
+            const Settings settings = settings_from({{{info.key, value, ""}}, {}});
             const std::string text = write_spec_toml(document_from(settings));
             CHECK(same(settings_from(read_spec_toml(text, "test")), settings));
         }

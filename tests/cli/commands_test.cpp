@@ -1,0 +1,238 @@
+#include <signal.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "cli/run_program.h"
+#include "core/exemplar/builtin/builtin_patterns.h"
+#include "core/mesh/mesh_report.h"
+#include "formats/image_file.h"
+#include "formats/mesh_file.h"
+#include "support/make_meshes.h"
+
+namespace fretwork {
+namespace {
+
+using Json = nlohmann::json;
+using Clock = std::chrono::steady_clock;
+using testing::ProgramResult;
+using testing::run_program;
+using testing::slurp;
+using testing::spit;
+using testing::TemporaryFolder;
+
+std::string vase_off() {
+    const TriangleMesh vase = testing::make_vase(50.0, 32, 16);
+    return write_mesh({vase}, MeshFormat::kOff);
+}
+
+const std::vector<std::string> kQuick = {"--preset",     "draft",
+                                         "--resolution", "32",
+                                         "--width-mm",   "24",
+                                         "-D",           "structure.max_iterations=2",
+                                         "-D",           "structure.samples=100"};
+
+std::vector<std::string> carve_line(const std::vector<std::string>& more) {
+    std::vector<std::string> line = {"carve"};
+    line.insert(line.end(), more.begin(), more.end());
+    line.insert(line.end(), kQuick.begin(), kQuick.end());
+    return line;
+}
+
+TEST_CASE("cli: help and version go to stdout and exit with 0", "[cli]") {
+    const auto line = GENERATE(values<std::vector<std::string>>({{"-h"},
+                                                                 {"--version"},
+                                                                 {"carve", "-h"},
+                                                                 {"convert", "-h"},
+                                                                 {"info", "-h"},
+                                                                 {"pattern", "-h"},
+                                                                 {"pattern", "list", "-h"},
+                                                                 {"pattern", "show", "-h"},
+                                                                 {"pattern", "preview", "-h"},
+                                                                 {"spec", "-h"},
+                                                                 {"spec", "init", "-h"},
+                                                                 {"render", "-h"}}));
+    const ProgramResult result = run_program(line);
+    CAPTURE(line);
+    CHECK(result.exit_code == 0);
+    CHECK(result.err.empty());
+    CHECK(result.out.size() > 5);
+    for (const auto& mistake : {std::vector<std::string>{}, {"carv"}, {"carve"}, {"spec"}})
+        CHECK(run_program(mistake).exit_code == 1);
+}
+
+TEST_CASE("cli: carve writes every format, streams equal files, runs repeat", "[cli][determinism]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.off", vase_off());
+    for (const char* extension : {"3mf", "stl", "obj", "ply", "off"}) {
+        CAPTURE(extension);
+        const std::string target = folder / (std::string("out.") + extension);
+        const ProgramResult file =
+            run_program(carve_line({folder / "vase.off", "--pattern", "cells", "-o", target, "--threads", "1"}));
+        CAPTURE(file.err);
+        REQUIRE(file.exit_code == 0);
+        CHECK(file.out.empty());
+        const std::string bytes = slurp(target);
+        const MeshFile carved = read_mesh(std::filesystem::path(target));
+        CHECK(report_mesh(carved.mesh, CountSelfIntersections::kYes).self_intersections == 0);
+        CHECK(report_mesh(carved.mesh).closed_manifold());
+        if (std::string(extension) == "obj" || std::string(extension) == "ply") continue;
+        // The same bytes through the streams; 3MF holds the model's name, so that only the mesh is the same.
+        const ProgramResult stream = run_program(carve_line({"-", "--input-format", "off", "--pattern", "cells", "-o",
+                                                             "-", "--export-format", extension, "-q"}),
+                                                 vase_off());
+        REQUIRE(stream.exit_code == 0);
+        CHECK(stream.err.empty());
+        if (std::string(extension) != "3mf")
+            CHECK((stream.out == bytes));
+        else {
+            const ProgramResult again = run_program(
+                carve_line({folder / "vase.off", "--pattern", "cells", "-o", folder / "b.3mf", "--threads", "2"}));
+            REQUIRE(again.exit_code == 0);
+            CHECK((slurp(folder / "b.3mf") == bytes));
+        }
+    }
+}
+
+TEST_CASE("cli: carve writes summary, preview and dependencies", "[cli]") {
+    const TemporaryFolder folder;
+    spit(folder / "my vase.off", vase_off());
+    spit(folder / "cells.toml", "[exemplar]\npattern = \"cells\"\n[shell]\nthickness_mm = 4.0\n");
+    spit(folder / "sets.json", R"({"parameterSets": {"small": {"synthesis.seed": "5"}}, "fileFormatVersion": "1"})");
+    const ProgramResult result = run_program(
+        carve_line({folder / "my vase.off", "--pattern", folder / "cells.toml", "-p", folder / "sets.json", "-P",
+                    "small", "-D", "shell.thickness_mm=4.5", "-o", folder / "out.stl", "--summary", folder / "out.json",
+                    "--preview", folder / "out.png", "-d", folder / "out.d", "--progress", "json"}));
+    CAPTURE(result.err);
+    REQUIRE(result.exit_code == 0);
+    const Json summary = Json::parse(slurp(folder / "out.json"));
+    CHECK(summary["settings"]["shell"]["thickness_mm"] == 4.5);  // -D wins over the spec
+    CHECK(summary["seed"] == 5);                                 // -P wins over the default
+    CHECK(summary["printability"]["one_piece"] == true);
+    CHECK(read_image(std::filesystem::path(folder / "out.png")).width == 1200);
+    const std::string rule = slurp(folder / "out.d");
+    CHECK(rule.starts_with((folder / "out.stl") + ":"));
+    CHECK(rule.find("my\\ vase.off") != std::string::npos);
+    for (const char* name : {"cells.toml", "sets.json"}) CHECK(rule.find(name) != std::string::npos);
+
+    std::istringstream lines(result.err);
+    double last = -1.0;
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with("{")) continue;
+        const Json progress = Json::parse(line);
+        CHECK(progress["fraction"].get<double>() >= last);
+        CHECK_FALSE(progress["stage"].get<std::string>().empty());
+        last = progress["fraction"];
+    }
+    CHECK(last == 1.0);
+}
+
+TEST_CASE("cli: check carves nothing and is quick", "[cli]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.off", vase_off());
+    const auto start = Clock::now();
+    const ProgramResult result =
+        run_program({"carve", folder / "vase.off", "--pattern", "cells", "--check", "--summary", "-"});
+    CHECK(Clock::now() - start < std::chrono::seconds(5));
+    CHECK(result.exit_code == 0);
+    CHECK(Json::parse(result.out)["shell"]["resolution"] == 256);
+    CHECK(result.err.find("can be carved") != std::string::npos);
+    CHECK(folder.names() == std::vector<std::string>{"vase.off"});
+}
+
+TEST_CASE("cli: an interrupted run exits with 130 and leaves nothing", "[cli][cancel]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.off", vase_off());
+    const int delay_ms = GENERATE(50, 400, 900);
+    Clock::time_point asked;
+    const ProgramResult result = run_program(
+        {"carve", folder / "vase.off", "--pattern", "cells", "-o", folder / "out.3mf"}, {}, [&](int process) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+            asked = Clock::now();
+            ::kill(process, SIGINT);
+        });
+    // A machine that is busy, or a sanitizer, gets five times the 0.2 s that are promised.
+    CHECK(Clock::now() - asked < std::chrono::seconds(1));
+    CHECK((result.exit_code == 130 || (delay_ms == 50 && result.exit_code == 128 + SIGINT)));
+    CHECK(folder.names() == std::vector<std::string>{"vase.off"});
+}
+
+TEST_CASE("cli: info describes models, pictures and specs", "[cli]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.off", vase_off());
+    spit(folder / "a.toml", "[shell]\nthickness_mm = 4\n[[keep]]\nshape = \"everywhere\"\n");
+    const Json mesh = Json::parse(run_program({"info", folder / "vase.off", "--json"}).out);
+    CHECK(mesh["mesh"]["closed"] == true);
+    CHECK(mesh["mesh"]["components"] == 1);
+    CHECK(mesh["size_mm"][2] == Approx(50.0));
+    CHECK(run_program({"info", folder / "vase.off"}).out.find("mesh.closed = true\n") != std::string::npos);
+    const Json spec = Json::parse(run_program({"info", folder / "a.toml", "--json"}).out);
+    CHECK(spec["changed"]["shell"]["thickness_mm"] == 4.0);
+    CHECK(spec["keep"] == 1);
+    REQUIRE(run_program({"pattern", "show", "cells", "-o", folder / "cells.png"}).exit_code == 0);
+    const Json picture = Json::parse(run_program({"info", folder / "cells.png", "--json"}).out);
+    CHECK(picture["usable"] == true);
+    CHECK(picture["width_px"] >= 128);
+    CHECK(run_program({"info", folder / "none.stl"}).exit_code == 2);
+}
+
+TEST_CASE("cli: patterns are listed, shown and previewed", "[cli]") {
+    const TemporaryFolder folder;
+    const ProgramResult list = run_program({"pattern", "list"});
+    for (const BuiltinPattern& pattern : builtin_patterns())
+        CHECK(list.out.find(std::string(pattern.name) + " ") != std::string::npos);
+    CHECK(Json::parse(run_program({"pattern", "list", "--json"}).out).size() == builtin_patterns().size());
+    CHECK(Json::parse(run_program({"pattern", "show", "dots", "--json"}).out)["connected"] == false);
+    CHECK(run_program({"pattern", "show", "none"}).exit_code == 1);
+    const ProgramResult preview = run_program(
+        {"pattern", "preview", "hexagons", "-o", folder / "hexagons.png", "--resolution", "40", "--width-mm", "30"});
+    CAPTURE(preview.err);
+    REQUIRE(preview.exit_code == 0);
+    CHECK(read_image(std::filesystem::path(folder / "hexagons.png")).height == 1200);
+}
+
+TEST_CASE("cli: specs are started, checked and described", "[cli]") {
+    const TemporaryFolder folder;
+    REQUIRE(
+        run_program({"spec", "init", "--preset", "fine", "--pattern", "waves", "-o", folder / "a.toml"}).exit_code ==
+        0);
+    CHECK(run_program({"spec", "check", folder / "a.toml"}).exit_code == 0);
+    const Json spec = Json::parse(run_program({"info", folder / "a.toml", "--json"}).out);
+    CHECK(spec["changed"]["exemplar"]["pattern"] == "waves");
+    CHECK(Json::parse(run_program({"spec", "schema"}).out)["type"] == "object");
+    spit(folder / "b.toml", "[exemplar]\nimage = \"gone.png\"\n");
+    CHECK(run_program({"spec", "check", folder / "b.toml"}).exit_code == 2);
+    spit(folder / "c.toml", "[exemplar]\nimagge = \"gone.png\"\n");
+    CHECK(run_program({"spec", "check", folder / "c.toml"}).exit_code == 1);
+}
+
+TEST_CASE("cli: convert keeps the mesh and scales units", "[cli]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.off", vase_off());
+    REQUIRE(run_program({"convert", folder / "vase.off", folder / "vase.3mf", "--input-unit", "inch"}).exit_code == 0);
+    const MeshFile before = read_mesh(std::filesystem::path(folder / "vase.off"));
+    const MeshFile after = read_mesh(std::filesystem::path(folder / "vase.3mf"));
+    CHECK(after.mesh.triangles.size() == before.mesh.triangles.size());
+    CHECK(report_mesh(after.mesh).max_mm[2] == Approx(50.0 * 25.4));
+    const ProgramResult stream =
+        run_program({"convert", "-", "-", "--input-format", "off", "--export-format", "off"}, vase_off());
+    CHECK(stream.out == vase_off());
+}
+
+TEST_CASE("cli: render draws sheets of views", "[cli]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.off", vase_off());
+    REQUIRE(run_program({"render", folder / "vase.off", "-o", folder / "v.png", "--size", "64x48", "--views", "4"})
+                .exit_code == 0);
+    const Image sheet = read_image(std::filesystem::path(folder / "v.png"));
+    CHECK(sheet.width >= 2 * 64);
+    CHECK(sheet.height >= 2 * 48);
+    CHECK(run_program({"render", folder / "vase.off", "-o", folder / "v.png", "--size", "big"}).exit_code == 1);
+    CHECK(run_program({"render", folder / "vase.off", "-o", folder / "v.png", "--size", "8"}).exit_code == 1);
+}
+
+}  // namespace
+}  // namespace fretwork

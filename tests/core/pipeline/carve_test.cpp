@@ -1,0 +1,189 @@
+#include "core/pipeline/carve.h"
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <random>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/exemplar/builtin/builtin_patterns.h"
+#include "core/pipeline/settings_schema.h"
+#include "core/reinforce/pattern_pieces.h"
+#include "support/make_meshes.h"
+
+namespace fretwork {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+CarveInput input_for(const TriangleMesh& mesh, const char* pattern) {
+    return {mesh, "test model", make_builtin(pattern), 24.0, pattern};
+}
+
+Settings quick(int resolution = 40) {
+    Settings settings;
+    apply_preset(settings, Preset::kDraft);
+    settings.shell.resolution = resolution;
+    settings.structure.steps.samples = 120;
+    settings.structure.steps.max_iterations = 3;
+    return settings;
+}
+
+TriangleMesh small_vase() {
+    return testing::make_vase(50.0, 40, 24);
+}
+
+TEST_CASE("carve: the record agrees with the result", "[pipeline]") {
+    const CarveResult result = carve(input_for(small_vase(), "cells"), quick());
+    const RunReport& r = result.report;
+    CHECK(r.shell.surface_voxels == result.shell.size());
+    CHECK(r.pattern.solid_voxels ==
+          static_cast<std::size_t>(std::count(result.solid.begin(), result.solid.end(), SolidState::kSolid)));
+    CHECK(r.pattern.solid_fraction > 0.05);
+    CHECK(r.pattern.solid_fraction < 0.97);
+    CHECK(r.pattern.components_after == 1);
+    CHECK(pattern_pieces(result.shell, result.solid).one_each());
+    CHECK_FALSE(r.iterations.empty());
+    CHECK_FALSE(r.structure.stopped_by.empty());
+    CHECK(r.mesh.report.triangles == result.carved.mesh.triangles.size());
+    CHECK(r.mesh.report.closed_manifold());
+    CHECK(r.mesh.report.self_intersections == 0);
+    CHECK(r.mesh.report.volume_mm3 > 0.0);
+    CHECK(result.carved.triangle_colors.size() == result.carved.mesh.triangles.size());
+    CHECK(result.voxel_colors.size() == result.shell.size());
+    double seconds = 0.0;
+    for (const StageSeconds& stage : r.seconds) seconds += stage.seconds;
+    CHECK(r.seconds.size() == 8);
+    CHECK(seconds <= r.seconds_total);
+    CHECK(r.peak_memory_bytes > 0);
+    // Every number that was left open is told.
+    for (const SettingAssignment& setting : r.settings)
+        if (setting.key == "shell.thickness_mm") CHECK(std::get<double>(setting.value) == r.shell.thickness_mm);
+}
+
+TEST_CASE("carve: threads do not show in the result", "[pipeline][determinism]") {
+    const CarveInput input = input_for(small_vase(), "waves");
+    const CarveResult one = carve(input, quick(), {1, 0});
+    for (const int threads : {2, 4}) {
+        const CarveResult many = carve(input, quick(), {threads, 0});
+        CHECK(many.solid == one.solid);
+        CHECK(many.reinforced == one.reinforced);
+        CHECK(many.carved.mesh.triangles == one.carved.mesh.triangles);
+        CHECK(many.carved.mesh.positions_mm == one.carved.mesh.positions_mm);
+        CHECK(many.carved.triangle_colors == one.carved.triangle_colors);
+    }
+}
+
+TEST_CASE("carve: progress rises from 0 to 1 over all stages", "[pipeline]") {
+    double last = -1.0;
+    std::vector<std::string> stages;
+    bool fell = false;
+    const RunControl run([&](std::string_view stage, double fraction) {
+        if (fraction < last) fell = true;
+        last = fraction;
+        if (stages.empty() || stages.back() != stage) stages.emplace_back(stage);
+    });
+    carve(input_for(small_vase(), "dots"), quick(32), {}, run);
+    CHECK_FALSE(fell);
+    CHECK(last == 1.0);
+    CHECK(stages.size() >= 8);
+}
+
+TEST_CASE("carve: stops soon after it is asked to, whenever that is", "[pipeline][cancel]") {
+    std::mt19937 rng(GENERATE(1u, 2u, 3u, 4u, 5u, 6u));
+    const int delay_ms = std::uniform_int_distribution<int>(0, 1500)(rng);
+    std::stop_source source;
+    Clock::time_point asked = Clock::time_point::max();
+    std::jthread timer([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+        asked = Clock::now();
+        source.request_stop();
+    });
+    bool cancelled = false;
+    try {
+        carve(input_for(small_vase(), "cells"), quick(64), {}, RunControl(nullptr, source.get_token()));
+    } catch (const Cancelled&) {
+        cancelled = true;
+    }
+    const auto ended = Clock::now();
+    timer.join();
+    CAPTURE(delay_ms, cancelled);
+    // The promise is 0.2 s on a machine that is free; a busy one or a sanitizer gets ten times as much.
+    if (cancelled) CHECK(ended - asked < std::chrono::seconds(2));
+}
+
+TEST_CASE("carve: what is kept stays solid, what is not named for carving too", "[pipeline]") {
+    const TriangleMesh vase = small_vase();
+    Settings settings = quick();
+    const HalfSpaceRegion foot{Vec3(0, 0, 15), Vec3::UnitZ()};
+    SECTION("keep") {
+        settings.keep.push_back({"foot", foot});
+    }
+    SECTION("carve") {
+        settings.carve.push_back({"body", HalfSpaceRegion{Vec3(0, 0, 15), -Vec3::UnitZ()}});
+    }
+    const CarveResult result = carve(input_for(vase, "dots"), settings);
+    CHECK(result.report.pattern.kept_voxels > 0);
+    std::size_t empty_above = 0;
+    for (std::size_t v = 0; v < result.shell.size(); ++v) {
+        if (result.shell.points_mm[v][2] < 15.0)
+            REQUIRE(result.solid[v] == SolidState::kSolid);
+        else if (result.solid[v] == SolidState::kEmpty)
+            ++empty_above;
+    }
+    CHECK(empty_above > 100);
+}
+
+TEST_CASE("carve: another seed, another arrangement", "[pipeline]") {
+    Settings settings = quick(32);
+    const CarveInput input = input_for(small_vase(), "zebra");
+    const CarveResult first = carve(input, settings);
+    settings.synthesis.search.seed = 2;
+    CHECK(carve(input, settings).solid != first.solid);
+}
+
+TEST_CASE("carve: colours as asked", "[pipeline]") {
+    Settings settings = quick(32);
+    const CarveInput input = input_for(small_vase(), "cells");
+    settings.output.colour = OutputColor::kNone;
+    CHECK(carve(input, settings).carved.triangle_colors.empty());
+    settings.output.colour = OutputColor::kSolid;
+    const std::vector<Rgb8> one = carve(input, settings).carved.triangle_colors;
+    REQUIRE_FALSE(one.empty());
+    CHECK(std::count(one.begin(), one.end(), one.front()) == static_cast<std::ptrdiff_t>(one.size()));
+}
+
+TEST_CASE("carve: what cannot be carved is refused", "[pipeline]") {
+    const TriangleMesh vase = small_vase();
+    TriangleMesh dangling = vase;
+    dangling.triangles.back()[0] = 1'000'000;
+    CHECK_THROWS_AS(carve(input_for({}, "cells"), quick()), InvalidInput);
+    CHECK_THROWS_AS(carve(input_for(dangling, "cells"), quick()), InvalidInput);
+    CHECK_THROWS_AS(carve(input_for(vase, "cells"), quick(), {0, 1'000'000}), MemoryLimit);
+
+    Settings thin = quick();
+    thin.shell.thickness_mm = 0.5;
+    CHECK_THROWS_AS(carve(input_for(vase, "cells"), thin), ConstraintsNotMet);
+    CHECK_THROWS_AS(check_carve(input_for(vase, "cells"), thin), ConstraintsNotMet);
+    Settings nowhere = quick();
+    nowhere.keep.push_back({"moon", SphereRegion{Vec3(0, 0, 1e4), 1.0}});
+    CHECK_THROWS_WITH(carve(input_for(vase, "cells"), nowhere), Catch::Contains("moon"));
+    CHECK_THROWS_WITH(check_carve(input_for(vase, "cells"), nowhere), Catch::Contains("moon"));
+    Settings unloaded = quick();
+    unloaded.structure.profile = LoadProfile::kOwn;
+    CHECK_THROWS_AS(check_carve(input_for(vase, "cells"), unloaded), ConstraintsNotMet);
+}
+
+TEST_CASE("carve: a check tells the numbers of the run", "[pipeline]") {
+    const CarveInput input = input_for(small_vase(), "cells");
+    const RunReport checked = check_carve(input, quick());
+    const RunReport carved = carve(input, quick()).report;
+    CHECK(checked.shell.voxel_mm == carved.shell.voxel_mm);
+    CHECK(checked.shell.thickness_mm == carved.shell.thickness_mm);
+    CHECK(checked.shell.components == carved.shell.components);
+    CHECK(checked.input.mesh.triangles == carved.input.mesh.triangles);
+    CHECK(checked.settings.size() == carved.settings.size());
+}
+
+}  // namespace
+}  // namespace fretwork
