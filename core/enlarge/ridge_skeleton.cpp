@@ -21,14 +21,16 @@ float step_length(const SurfaceVoxels& shell, VoxelIndex a, VoxelIndex b) {
     return static_cast<float>((shell.points_mm[a] - shell.points_mm[b]).norm() / shell.grid.voxel_mm);
 }
 
-/// Prim's tree over heights: the highest voxel of the front is taken next, of equals the one nearest to the root.
+/// Prim's tree over heights: the highest voxel of the front is taken next, of equals the one with the highest parent,
+/// so that flanks hang from their ridge and do not string along it, then the one nearest to the root.
 RidgeForest flood(const SurfaceVoxels& shell, const VoxelMask& solid, const std::vector<float>& height,
                   const RunControl& run) {
     struct Front {
-        float height, depth;
+        float height, parent_height, depth;
         VoxelIndex voxel, parent;
         bool operator<(const Front& o) const {
-            return std::tuple(height, -depth, o.voxel, o.parent) < std::tuple(o.height, -o.depth, voxel, parent);
+            return std::tuple(height, parent_height, -depth, o.voxel, o.parent) <
+                   std::tuple(o.height, o.parent_height, -o.depth, voxel, parent);
         }
     };
     RidgeForest forest;
@@ -43,7 +45,7 @@ RidgeForest flood(const SurfaceVoxels& shell, const VoxelMask& solid, const std:
     std::priority_queue<Front> front;
     for (const VoxelIndex seed : seeds) {
         if (done[seed] != 0) continue;
-        front.push({height[seed], 0.0F, seed, kNone});
+        front.push({height[seed], height[seed], 0.0F, seed, kNone});
         while (!front.empty()) {
             const Front f = front.top();
             front.pop();
@@ -55,7 +57,7 @@ RidgeForest flood(const SurfaceVoxels& shell, const VoxelMask& solid, const std:
             if ((forest.order.size() & 0xFFF) == 0) run.throw_if_stopped();
             for (const VoxelIndex u : shell.adjacency.of(f.voxel))
                 if (solid[u] != 0 && done[u] == 0)
-                    front.push({height[u], f.depth + step_length(shell, f.voxel, u), u, f.voxel});
+                    front.push({height[u], height[f.voxel], f.depth + step_length(shell, f.voxel, u), u, f.voxel});
         }
     }
     return forest;
