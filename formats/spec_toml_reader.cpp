@@ -116,16 +116,16 @@ class TomlFlattener {
     std::vector<Placed<SettingTable>> tables_;
 };
 
-/// toml++ 3.3 looks for blanks among the code points U+FC36 to U+FEFE in a way that is undefined, so
-/// these few (old Arabic letter forms) are refused from U+FC00, the start of a UTF-8 block, on.
+/// toml++ 3.3 looks for blanks among the code points U+FB26 to U+FEFE in a way that is undefined, so
+/// these few (ligatures and Arabic letter forms) are refused, from the block U+FB00 on.
 void refuse_fragile_characters(std::string_view text, std::string_view source) {
     std::size_t line = 1;
     for (std::size_t i = 0; i + 2 < text.size(); ++i) {
         if (text[i] == '\n') ++line;
         const std::string_view character = text.substr(i, 3);
-        if (character >= "\xEF\xB0\x80" && character < "\xEF\xBB\xBF")
+        if (character >= "\xEF\xAC\x80" && character < "\xEF\xBB\xBF")
             throw InvalidSetting(std::string(source) + ": line " + std::to_string(line) +
-                                 ": found a character from U+FC00 to U+FEFE, expected others");
+                                 ": found a character from U+FB00 to U+FEFE, expected others");
     }
 }
 
