@@ -12,8 +12,7 @@ namespace fretwork {
 /// path: "structure.loads", but not inside of each other). Assignments and tables come in the order
 /// of the text, each with its place: "SOURCE: line 4, column 1". Lists hold numbers.
 /// \throws InvalidSetting  naming the place: bad TOML; a date; a list of anything but numbers; a
-///                         number that is not finite; text over 1 MiB; tables nested over 32 deep;
-///                         a character from U+FB00 to U+FEFE (the TOML library mishandles them).
+///                         number that is not finite; text over 1 MiB; tables nested over 32 deep.
 SpecDocument read_spec_toml(std::string_view text, std::string_view source);
 
 /// \throws FileError  cannot be opened.
