@@ -45,7 +45,16 @@ class Sharpener {
     }
 
   private:
-    [[nodiscard]] static Vec3 rounded(const Vec3& p) { return p.cast<float>().cast<double>(); }
+    /// The volatile step is needed: g++ 12 at -O3 pairs the components up and drops the conversion to float and back
+    /// (seen in its code; the mesh test for float positions fails without it).
+    [[nodiscard]] static Vec3 rounded(const Vec3& p) {
+        Vec3 result;
+        for (int k = 0; k < 3; ++k) {
+            const volatile float component = static_cast<float>(p[k]);
+            result[k] = static_cast<double>(component);
+        }
+        return result;
+    }
 
     void place(std::size_t v) {
         const WallVertex& vertex = wall_.vertices[v];

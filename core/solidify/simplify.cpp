@@ -33,10 +33,10 @@ constexpr double kLeastQuality = 0.03;
 constexpr double kFoldCosine = -0.95;
 
 /// More samples than this in one ring would cost more than the triangles it saves.
-constexpr std::size_t kMostSamples = 400;
+constexpr std::size_t kMostSamples = 1000;
 
 /// Samples nearer to their triangle than this share of the tolerance say no more than its corners do.
-constexpr double kFlatShare = 0.01;
+constexpr double kFlatShare = 1e-4;
 
 struct Shape {
     Vec3 normal;
