@@ -1,0 +1,102 @@
+// Promises 1 to 4 on what comes out of the whole flow, over models, patterns and seeds.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+
+#include "core/exemplar/builtin/builtin_patterns.h"
+#include "core/mesh/closest_point.h"
+#include "core/mesh/mesh_report.h"
+#include "properties/carve_cases.h"
+#include "support/make_meshes.h"
+#include "support/width_oracle.h"
+
+namespace fretwork::testing {
+namespace {
+
+/// Coordinates as a file with single precision would keep them.
+TriangleMesh rounded_to_float(TriangleMesh mesh) {
+    for (Vec3& p : mesh.positions_mm) p = p.cast<float>().cast<double>();
+    return mesh;
+}
+
+void check_valid(const TriangleMesh& mesh) {
+    const MeshReport report = report_mesh(mesh, CountSelfIntersections::kYes);
+    CHECK(report.closed_manifold());
+    CHECK(report.non_manifold_vertices == 0);
+    CHECK(report.degenerate_triangles == 0);
+    CHECK(report.self_intersections == 0);
+    CHECK(report.volume_mm3 > 0.0);
+}
+
+/// Wall thickness away from the rim: no point of the wall is deeper below the surface than the wall is thick, and
+/// none lies outside by more than rounding and simplification allow.
+void check_wall(const CarveResult& result, bool centred) {
+    const SurfaceTree surface(result.surface);
+    const double voxel = result.report.shell.voxel_mm;
+    const double wall = result.report.shell.thickness_mm;
+    double deepest = 0.0;
+    double highest = 0.0;
+    for (const Vec3& p : result.carved.mesh.positions_mm) {
+        const double d = centred ? surface.closest(p).distance_mm : -surface.signed_distance_mm(p);
+        deepest = std::max(deepest, d);
+        highest = std::min(highest, d);
+    }
+    CHECK(deepest <= (centred ? 0.5 * wall : wall) + 0.35 * voxel);
+    CHECK(deepest >= (centred ? 0.5 * wall : wall) - 0.35 * voxel);
+    CHECK(highest >= -0.35 * voxel);
+}
+
+TEST_CASE("carve: one piece for each part, a valid mesh, the wall as asked", "[property]") {
+    const auto models = property_models();
+    const auto m = GENERATE(range(0, 9));
+    const PropertyModel& model = models.at(static_cast<std::size_t>(m));
+    // Each model meets a connected, a striped and a fully disconnected pattern in turn, with seeds of its own.
+    const std::string pattern = GENERATE("cells", "zebra", "dots");
+    const std::uint64_t seed = 1 + static_cast<std::uint64_t>(m) * 3;
+    CAPTURE(model.name, pattern, seed);
+
+    const CarveResult result = carve_model(model, pattern, seed);
+    CHECK(body_count(result.carved.mesh) == model.parts);
+    check_valid(result.carved.mesh);
+    check_valid(rounded_to_float(result.carved.mesh));
+    check_wall(result, model.open);
+    REQUIRE(result.carved.triangle_colors.size() == result.carved.mesh.triangles.size());
+}
+
+TEST_CASE("carve: no feature thinner and no hole narrower than asked", "[property]") {
+    const auto models = property_models();
+    const auto m = GENERATE(0, 1, 2);
+    const PropertyModel& model = models.at(static_cast<std::size_t>(m));
+    const std::string pattern = GENERATE("cells", "zebra", "hooks");
+    CAPTURE(model.name, pattern);
+    const CarveResult result = carve_model(model, pattern, 5);
+    const double voxel = result.report.shell.voxel_mm;
+
+    // The voxels know widths to one voxel and samples to their spacing, so the discs are that much smaller.
+    const double spacing = 0.25 * voxel;
+    const double width = result.report.mesh.min_feature_mm - voxel - 2.0 * spacing;
+    const WidthJudgement judged =
+        judge_widths(result.surface, result.carved.mesh, 0.3 * result.report.shell.thickness_mm, spacing, width, width);
+    CHECK(judged.samples > 10000);
+    CHECK(judged.solid_share > 0.2);
+    CHECK(judged.solid_share < 0.95);
+    CHECK(judged.too_thin_share < 0.002);
+    CHECK(judged.too_narrow_share < 0.002);
+}
+
+TEST_CASE("the width oracle tells wide stripes from narrow ones", "[property]") {
+    // A box wall cut into bars: 1 mm bars with 1 mm gaps on a 12 mm square.
+    const TriangleMesh surface = translated(make_square(12.0, 1), Vec3(0, 0, 1));
+    TriangleMesh bars;
+    for (int k = 0; k < 6; ++k) bars = joined(bars, make_box(Vec3(2.0 * k, 0, 0), Vec3(2.0 * k + 1.0, 12, 1)));
+    const WidthJudgement fits = judge_widths(surface, bars, 0.5, 0.08, 0.8, 0.8);
+    CHECK(fits.solid_share == Approx(0.5).margin(0.03));
+    CHECK(fits.too_thin_share < 0.01);
+    CHECK(fits.too_narrow_share < 0.01);
+    const WidthJudgement too_much = judge_widths(surface, bars, 0.5, 0.08, 1.3, 1.3);
+    CHECK(too_much.too_thin_share > 0.9);
+    CHECK(too_much.too_narrow_share > 0.8);
+}
+
+}  // namespace
+}  // namespace fretwork::testing
