@@ -35,9 +35,6 @@ constexpr double kFoldCosine = -0.95;
 /// More samples than this in one ring would cost more than the triangles it saves.
 constexpr std::size_t kMostSamples = 1000;
 
-/// Samples nearer to their triangle than this share of the tolerance say no more than its corners do.
-constexpr double kFlatShare = 1e-4;
-
 struct Shape {
     Vec3 normal;
     double quality;
@@ -82,6 +79,12 @@ bool similar(const Rgb8& a, const Rgb8& b, int step) {
     return true;
 }
 
+Rgb8 mean_color(const Rgb8& a, const Rgb8& b, const Rgb8& c) {
+    Rgb8 mean;
+    for (std::size_t k = 0; k < 3; ++k) mean[k] = static_cast<std::uint8_t>((int{a[k]} + int{b[k]} + int{c[k]}) / 3);
+    return mean;
+}
+
 /// The vertices that went, filed under the triangle that now stands for them.
 struct Samples {
     std::vector<std::uint32_t> first;  ///< per triangle
@@ -95,13 +98,13 @@ class BlockSimplifier {
                     const std::vector<std::uint8_t>& locked, const std::vector<Rgb8>& colors, int color_step)
         : mesh_(mesh), samples_(samples), block_(block), locked_(locked), colors_(colors), color_step_(color_step) {}
 
-    void sweep(const std::uint32_t* begin, const std::uint32_t* end, double allowed, double tolerance) {
+    void sweep(const std::uint32_t* begin, const std::uint32_t* end, double allowed) {
         for (const std::uint32_t* v = begin; v != end; ++v)
-            if (locked_[*v] == 0 && mesh_.alive(*v)) try_vertex(*v, allowed, tolerance);
+            if (locked_[*v] == 0 && mesh_.alive(*v)) try_vertex(*v, allowed);
     }
 
   private:
-    void try_vertex(std::uint32_t u, double allowed, double tolerance) {
+    void try_vertex(std::uint32_t u, double allowed) {
         mesh_.corners_around(u, around_);
         for (const Corner c : around_)
             if (block_[mesh_.vertex(CollapseMesh::next(c))] != block_[u]) return;
@@ -120,7 +123,7 @@ class BlockSimplifier {
             }
         }
         if (best == kNone || !mesh_.may_collapse(around_, best) || meets_neighbors(u, best) ||
-            !file_samples(u, best, allowed, tolerance))
+            !file_samples(u, best, allowed))
             return;
         mesh_.collapse(around_, best);
     }
@@ -190,13 +193,13 @@ class BlockSimplifier {
 
     /// Finds for u and every sample of its ring the nearest triangle of the new ring. Changes nothing and returns false
     /// if one is farther than allowed.
-    bool file_samples(std::uint32_t u, Corner edge, double allowed, double tolerance) {
+    bool file_samples(std::uint32_t u, Corner edge, double allowed) {
         const std::uint32_t v = mesh_.vertex(CollapseMesh::next(edge));
-        moved_.assign(1, {u, kNone, 0.0});
+        moved_.assign(1, {u, kNone, 0.0, {}});
         staying_.clear();
         for (const Corner c : around_) {
             for (std::uint32_t s = samples_.first[c / 3]; s != kNone; s = samples_.next[s])
-                moved_.push_back({s, kNone, 0.0});
+                moved_.push_back({s, kNone, 0.0, {}});
             const std::uint32_t p = mesh_.vertex(CollapseMesh::next(c)), q = mesh_.vertex(CollapseMesh::previous(c));
             if (p != v && q != v) staying_.push_back({c / 3, p, q});
         }
@@ -210,13 +213,13 @@ class BlockSimplifier {
                 if (d2 >= nearest2) continue;
                 nearest2 = d2;
                 sample.triangle = r.triangle;
+                sample.color = mean_color(colors_[v], colors_[r.p], colors_[r.q]);
             }
             sample.distance = std::sqrt(nearest2);
-            if (sample.distance > allowed) return false;
+            if (sample.distance > allowed || !similar(sample.color, colors_[sample.vertex], color_step_)) return false;
         }
         for (const Corner c : around_) samples_.first[c / 3] = kNone;
         for (const Filed& sample : moved_) {
-            if (sample.distance < kFlatShare * tolerance) continue;
             samples_.next[sample.vertex] = samples_.first[sample.triangle];
             samples_.first[sample.triangle] = sample.vertex;
         }
@@ -226,6 +229,7 @@ class BlockSimplifier {
     struct Filed {
         std::uint32_t vertex, triangle;
         double distance;
+        Rgb8 color;  ///< of that triangle
     };
     struct Ring {
         std::uint32_t triangle, p, q;
@@ -295,7 +299,7 @@ TriangleMesh collapse_all(const TriangleMesh& input, const std::vector<Rgb8>& co
                     for (const double share : kSweeps) {
                         run.throw_if_stopped();
                         worker.sweep(blocks.order.data() + blocks.first[b], blocks.order.data() + blocks.first[b + 1],
-                                     share * tolerance, tolerance);
+                                     share * tolerance);
                     }
                 }
             });

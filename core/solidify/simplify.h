@@ -13,7 +13,9 @@ namespace fretwork {
 struct SimplifySettings {
     double tolerance_mm = 0.05;
     std::size_t target_triangles = 0;  ///< 0: as the tolerance allows; else the tolerance is doubled until it is met
-    int color_step = 48;               ///< a vertex joins one whose colour differs by no more in any channel
+    /// A sample's colour differs from the mean of its triangle's corners by no more in any channel; 255: colours do
+    /// not matter.
+    int color_step = 40;
     double block_mm = 10.0;            ///< side of the cubes that are simplified in parallel
 };
 
