@@ -169,14 +169,16 @@ class Enlarger {
 
     void enlarge_skeleton() {
         const double radius = 0.5 * feature_;
-        const std::vector<float> to_empty = geodesic_distance(links_, empty(), radius + 1.0, run_);
+        const VoxelMask outside = empty();
+        const std::vector<float> to_empty = geodesic_distance(links_, outside, radius + 1.0, run_);
         const SkeletonSettings settings{
             .core_radius_voxels = radius - kSlack,
             .shortest_leaf_voxels = feature_,
             // A ring of the printable width around a printable hole is not shorter.
             .shortest_loop_voxels = std::numbers::pi * (feature_ + hole_),
         };
-        const VoxelMask skeleton = ridge_skeleton(shell_, solid_, to_empty, settings, run_);
+        const VoxelMask skeleton =
+            ridge_skeleton(shell_, solid_, to_empty, opened(outside, to_empty, feature_), settings, run_);
         const std::vector<float> to_skeleton = geodesic_distance(links_, skeleton, radius + kSlack, run_);
         for (VoxelIndex v = 0; v < shell_.size(); ++v)
             if (to_skeleton[v] != kBeyondReach) result_.voxels_enlarged += make_solid(v);

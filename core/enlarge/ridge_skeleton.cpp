@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <queue>
 #include <tuple>
+#include <utility>
 
 namespace fretwork {
 namespace {
@@ -65,12 +66,14 @@ RidgeForest flood(const SurfaceVoxels& shell, const VoxelMask& solid, const std:
 
 /// Keeps the tree's voxels that have at least `shortest` of branch beyond them, and then follows each kept end along
 /// its longest branch until `tip` before the branch ends, so that long branches keep their length.
-VoxelMask prune_leaves(const RidgeForest& forest, std::size_t count, float shortest, float tip) {
+VoxelMask prune_leaves(const RidgeForest& forest, VoxelMask needed, float shortest, float tip) {
+    const std::size_t count = needed.size();
     std::vector<float> beyond(count, 0.0F);
     std::vector<VoxelIndex> longest_child(count, kNone);
     for (auto it = forest.order.rbegin(); it != forest.order.rend(); ++it) {
         const VoxelIndex p = forest.parent[*it];
-        if (p == kNone) continue;
+        if (p == kNone || needed[*it] == 0) continue;
+        needed[p] = 1;
         const float length = beyond[*it] + forest.depth[*it] - forest.depth[p];
         if (longest_child[p] != kNone && length <= beyond[p]) continue;
         beyond[p] = length;
@@ -81,7 +84,7 @@ VoxelMask prune_leaves(const RidgeForest& forest, std::size_t count, float short
         const VoxelIndex p = forest.parent[v];
         const bool continues = p != kNone && kept[p] != 0 && longest_child[p] == v && beyond[v] >= tip;
         // A root's own branches may all be short: then the whole piece is smaller than a leaf and stays out.
-        kept[v] = beyond[v] >= shortest || continues ? 1 : 0;
+        kept[v] = needed[v] != 0 && (beyond[v] >= shortest || continues) ? 1 : 0;
     }
     return kept;
 }
@@ -106,7 +109,8 @@ struct Pass {
 
 /// Edges outside the core that are not in the forest and close a long loop, the highest first.
 std::vector<Pass> loop_passes(const SurfaceVoxels& shell, const VoxelMask& solid, const std::vector<float>& height,
-                              const RidgeForest& forest, const SkeletonSettings& settings, const RunControl& run) {
+                              const VoxelMask& wide_enough, const RidgeForest& forest, const SkeletonSettings& settings,
+                              const RunControl& run) {
     std::vector<Pass> passes;
     const auto core = static_cast<float>(settings.core_radius_voxels);
     const auto shortest = static_cast<float>(settings.shortest_loop_voxels);
@@ -115,7 +119,8 @@ std::vector<Pass> loop_passes(const SurfaceVoxels& shell, const VoxelMask& solid
         for (const VoxelIndex b : shell.adjacency.of(a)) {
             const float low = std::min(height[a], height[b]);
             if (b < a || solid[b] == 0 || low >= core) continue;
-            if (forest.parent[a] == b || forest.parent[b] == a) continue;
+            if (forest.parent[a] == b || forest.parent[b] == a || (wide_enough[a] != 0 && wide_enough[b] != 0))
+                continue;
             if (cycle_length(forest, a, b, step_length(shell, a, b), shortest) >= shortest)
                 passes.push_back({low, a, b});
         }
@@ -151,16 +156,20 @@ void add_loops(const SurfaceVoxels& shell, const std::vector<Pass>& passes, cons
 }  // namespace
 
 VoxelMask ridge_skeleton(const SurfaceVoxels& shell, const VoxelMask& solid,
-                         const std::vector<float>& distance_to_empty, const SkeletonSettings& settings,
-                         const RunControl& run) {
+                         const std::vector<float>& distance_to_empty, const VoxelMask& wide_enough,
+                         const SkeletonSettings& settings, const RunControl& run) {
     const auto core = static_cast<float>(settings.core_radius_voxels);
     std::vector<float> height(shell.size(), 0.0F);
     for (std::size_t v = 0; v < shell.size(); ++v)
         if (solid[v] != 0) height[v] = std::min(distance_to_empty[v], core);
 
     const RidgeForest forest = flood(shell, solid, height, run);
-    VoxelMask kept = prune_leaves(forest, shell.size(), static_cast<float>(settings.shortest_leaf_voxels), 0.5F * core);
-    add_loops(shell, loop_passes(shell, solid, height, forest, settings, run), forest, kept);
+    VoxelMask needed(shell.size(), 0);
+    for (std::size_t v = 0; v < shell.size(); ++v)
+        needed[v] = solid[v] != 0 && (height[v] >= core || wide_enough[v] == 0) ? 1 : 0;
+    VoxelMask kept =
+        prune_leaves(forest, std::move(needed), static_cast<float>(settings.shortest_leaf_voxels), 0.5F * core);
+    add_loops(shell, loop_passes(shell, solid, height, wide_enough, forest, settings, run), forest, kept);
     for (std::size_t v = 0; v < shell.size(); ++v)
         if (height[v] >= core) kept[v] = 0;
     return kept;

@@ -20,9 +20,11 @@ struct SkeletonSettings {
 /// `shortest_leaf_voxels` are pruned, and passes that close a loop longer than `shortest_loop_voxels` are put back.
 ///
 /// \param distance_to_empty  in voxels; larger values than the core radius count as the core radius
+/// \param wide_enough  voxels that lie in a disc of solid of the core radius: flanks of wide places, where no branch
+///                     and no loop is wanted
 /// \return  the skeleton's voxels outside the core, that is, where the pattern is too thin
 VoxelMask ridge_skeleton(const SurfaceVoxels& shell, const VoxelMask& solid,
-                         const std::vector<float>& distance_to_empty, const SkeletonSettings& settings,
-                         const RunControl& run = {});
+                         const std::vector<float>& distance_to_empty, const VoxelMask& wide_enough,
+                         const SkeletonSettings& settings, const RunControl& run = {});
 
 }  // namespace fretwork

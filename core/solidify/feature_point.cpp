@@ -11,7 +11,7 @@ namespace {
 constexpr float kFoldCosine = 0.94F;  // 20 degrees
 
 constexpr double kAccepted = 0.15;    // voxels off the faces
-constexpr double kLongestMove = 1.5;  // voxels from the chord it replaces; farther, the planes say nothing
+constexpr double kLongestMove = 0.8;  // voxels from the chord it replaces; farther, the planes say nothing
 constexpr int kRounds = 4;
 
 using Vec2d = Eigen::Vector2d;

@@ -1,4 +1,4 @@
-// One solid piece per connected component of the input.
+// One solid piece per connected component of the input, without trapped hollows.
 #pragma once
 
 #include <cstddef>
@@ -21,6 +21,13 @@ struct RemovedIslands {
 RemovedIslands remove_islands(const WallLattice& lattice, const WallField& field,
                               const std::vector<std::uint32_t>& triangle_component, NodeValues& values,
                               const RunControl& run);
+
+/// Fills the hollows that no opening reaches and that hold less than a fiftieth of the wall, as two walls that nearly
+/// meet leave between them: powder, resin or support would stay in them for ever, and slicers count each as a part.
+/// Larger closed hollows are what was asked for and stay.
+/// \return how many were filled
+std::size_t fill_trapped_hollows(const WallLattice& lattice, const WallField& field, NodeValues& values,
+                                 const RunControl& run);
 
 /// Connected component of each triangle over shared vertices, numbered by first triangle.
 std::vector<std::uint32_t> triangle_components(const TriangleMesh& mesh);

@@ -89,6 +89,8 @@ Rgb8 mean_color(const Rgb8& a, const Rgb8& b, const Rgb8& c) {
 struct Samples {
     std::vector<std::uint32_t> first;  ///< per triangle
     std::vector<std::uint32_t> next;   ///< per vertex
+    /// Per vertex: it could not go at the full tolerance, and nothing has changed around it since.
+    std::vector<std::uint8_t> settled;
 };
 
 /// Work of one thread on one block.
@@ -98,13 +100,13 @@ class BlockSimplifier {
                     const std::vector<std::uint8_t>& locked, const std::vector<Rgb8>& colors, int color_step)
         : mesh_(mesh), samples_(samples), block_(block), locked_(locked), colors_(colors), color_step_(color_step) {}
 
-    void sweep(const std::uint32_t* begin, const std::uint32_t* end, double allowed) {
+    void sweep(const std::uint32_t* begin, const std::uint32_t* end, double allowed, bool full) {
         for (const std::uint32_t* v = begin; v != end; ++v)
-            if (locked_[*v] == 0 && mesh_.alive(*v)) try_vertex(*v, allowed);
+            if (locked_[*v] == 0 && mesh_.alive(*v) && samples_.settled[*v] == 0) try_vertex(*v, allowed, full);
     }
 
   private:
-    void try_vertex(std::uint32_t u, double allowed) {
+    void try_vertex(std::uint32_t u, double allowed, bool full) {
         mesh_.corners_around(u, around_);
         for (const Corner c : around_)
             if (block_[mesh_.vertex(CollapseMesh::next(c))] != block_[u]) return;
@@ -123,8 +125,11 @@ class BlockSimplifier {
             }
         }
         if (best == kNone || !mesh_.may_collapse(around_, best) || meets_neighbors(u, best) ||
-            !file_samples(u, best, allowed))
+            !file_samples(u, best, allowed)) {
+            samples_.settled[u] = full ? 1 : 0;
             return;
+        }
+        for (const Corner c : around_) samples_.settled[mesh_.vertex(CollapseMesh::next(c))] = 0;
         mesh_.collapse(around_, best);
     }
 
@@ -286,10 +291,12 @@ TriangleMesh collapse_all(const TriangleMesh& input, const std::vector<Rgb8>& co
                           const RunControl& run) {
     CollapseMesh mesh(input);
     Samples samples{std::vector<std::uint32_t>(mesh.triangle_slots(), kNone),
-                    std::vector<std::uint32_t>(mesh.vertex_count(), kNone)};
+                    std::vector<std::uint32_t>(mesh.vertex_count(), kNone),
+                    {}};
     TriangleMesh result;
     double tolerance = settings.tolerance_mm;
     for (int doubling = 0; doubling < kDoublings; ++doubling) {
+        samples.settled.assign(mesh.vertex_count(), 0);
         const int color_step = doubling == 0 ? settings.color_step : 255;
         for (int pass = 0; pass < kPasses; ++pass) {
             const Blocks blocks = make_blocks(mesh, settings.block_mm, pass);
@@ -299,7 +306,7 @@ TriangleMesh collapse_all(const TriangleMesh& input, const std::vector<Rgb8>& co
                     for (const double share : kSweeps) {
                         run.throw_if_stopped();
                         worker.sweep(blocks.order.data() + blocks.first[b], blocks.order.data() + blocks.first[b + 1],
-                                     share * tolerance);
+                                     share * tolerance, share == 1.0);
                     }
                 }
             });

@@ -16,7 +16,7 @@ struct SimplifySettings {
     /// A sample's colour differs from the mean of its triangle's corners by no more in any channel; 255: colours do
     /// not matter.
     int color_step = 40;
-    double block_mm = 10.0;            ///< side of the cubes that are simplified in parallel
+    double block_mm = 10.0;  ///< side of the cubes that are simplified in parallel
 };
 
 /// Collapses edges onto one of their ends, so that every vertex of the result is a vertex of the input. Each vertex

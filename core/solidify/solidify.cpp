@@ -127,6 +127,7 @@ SimplifySettings simplify_settings(const SolidifySettings& settings, double voxe
     simplify.tolerance_mm = std::max(settings.simplify_tolerance_voxels, 0.01) * voxel_mm;
     simplify.target_triangles = settings.target_triangles;
     simplify.block_mm = 24.0 * voxel_mm;
+    if (!settings.keep_colors) simplify.color_step = 255;
     return simplify;
 }
 
@@ -149,6 +150,7 @@ CarvedMesh solidify(const TriangleMesh& mesh, const SurfaceVoxels& shell, const 
     const RemovedIslands islands = remove_islands(lattice, field, triangle_components(mesh), values, run);
     carved.islands_removed = islands.count;
     carved.islands_volume_mm3 = islands.volume_mm3;
+    carved.hollows_filled = fill_trapped_hollows(lattice, field, values, run);
     run.checkpoint(kStage, 0.35);
     const WallMesh wall = march_tetrahedra(lattice, values, field, edge_clamp(lattice, shell), run);
     run.checkpoint(kStage, 0.6);

@@ -21,8 +21,9 @@ struct SolidifySettings {
     double thickness_mm = 2.0;  ///< at least two voxels
     WallSide side = WallSide::kInward;
     double simplify_tolerance_voxels = 0.1;  ///< 0 keeps every triangle of the lattice
-    std::size_t target_triangles =
-        0;  ///< 0: as few as the tolerance allows; else no more than this where validity allows
+    /// 0: as few as the tolerance allows; else no more than this where validity allows.
+    std::size_t target_triangles = 0;
+    bool keep_colors = true;  ///< triangles stay small where the pattern's colours change
 };
 
 struct CarvedMesh {
@@ -31,6 +32,7 @@ struct CarvedMesh {
     std::vector<std::uint32_t> triangle_voxels;  ///< surface voxel whose pattern each triangle shows
     std::size_t islands_removed = 0;             ///< loose solid pieces dropped
     double islands_volume_mm3 = 0.0;
+    std::size_t hollows_filled = 0;  ///< closed hollows too small to be meant
 };
 
 /// Marching tetrahedra over a band of the shell's grid around the surface, roots on the input
