@@ -67,6 +67,7 @@ void add_named_flags(const PatternOptions& options, SpecDocument& document) {
     set("exemplar.width_mm", options.width_mm, "--width-mm");
     if (options.resolution)
         document.assignments.push_back({"shell.resolution", std::int64_t{*options.resolution}, "--resolution"});
+    if (!options.up.empty()) document.assignments.push_back({"input.up", options.up, "--up"});
     if (!options.preset.empty()) document.assignments.push_back({"synthesis.preset", options.preset, "--preset"});
 }
 
@@ -93,6 +94,9 @@ void add_setting_flags(CLI::App& command, PatternOptions& o) {
     command
         .add_option("--size-mm", o.size_mm, "Scale the model so that its longest side is this; for files without units")
         ->type_name("MM")
+        ->group(group);
+    command.add_option("--up", o.up, "Axis of the model that points up: x, y, z, -x, -y or -z; the model is turned")
+        ->type_name("AXIS")
         ->group(group);
     command.add_option("--thickness-mm", o.thickness_mm, "Thickness of the carved wall")->type_name("MM")->group(group);
     command.add_option("--width-mm", o.width_mm, "Width of one repeat of the pattern on the surface")

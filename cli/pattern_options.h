@@ -19,6 +19,7 @@ struct PatternOptions {
     std::string parameter_file, parameter_set;
     std::vector<std::string> assignments;
     std::string preset;
+    std::string up;
     std::optional<std::uint64_t> seed;
     std::optional<double> size_mm, thickness_mm, width_mm;
     std::optional<int> resolution;

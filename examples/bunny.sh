@@ -25,6 +25,6 @@ if [ ! -s "$out/bunny00.off" ]; then
   mv "$fetched/bunny00.off" "$out/bunny00.off"
 fi
 
-build/release/cli/fretwork carve "$out/bunny00.off" --size-mm 100 --pattern "$pattern" --set "shell.resolution=$resolution" \
+build/release/cli/fretwork carve "$out/bunny00.off" --up y --size-mm 100 --pattern "$pattern" --set "shell.resolution=$resolution" \
   -o "$out/bunny-$pattern.3mf" --summary "$out/bunny-$pattern.json" --preview "$out/bunny-$pattern.png"
 ls -l "$out"/bunny-"$pattern".*

@@ -22,6 +22,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/float_rounding.h"
 #include "formats/parse_error.h"
 #include "formats/weld_equal.h"
 
@@ -116,7 +117,7 @@ class FaceCollector {
 
     /// Two faces may differ in the last bits of the points on their common edge; rounded to floats they agree.
     Vec3 placed(const gp_Pnt& p) const {
-        const Vec3 rounded = Vec3(p.X(), p.Y(), p.Z()).cast<float>().cast<double>();
+        const Vec3 rounded = rounded_to_float(Vec3(p.X(), p.Y(), p.Z()));
         if (!(rounded.cwiseAbs().maxCoeff() <= kMaxCoordinate))
             fail_parse(source_, "face " + std::to_string(faces_), "a coordinate that is not finite or over 1e9",
                        "a smaller one");

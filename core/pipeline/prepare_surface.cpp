@@ -10,13 +10,34 @@
 #include "core/pipeline/resolve_settings.h"
 
 namespace fretwork {
+namespace {
+
+/// Quarter and half turns only, so that coordinates stay exact.
+Vec3 turned_up(const Vec3& p, UpAxis up) {
+    switch (up) {
+        case UpAxis::kX:
+            return {-p[2], p[1], p[0]};
+        case UpAxis::kY:
+            return {p[0], -p[2], p[1]};
+        case UpAxis::kZ:
+            break;
+        case UpAxis::kMinusX:
+            return {p[2], p[1], -p[0]};
+        case UpAxis::kMinusY:
+            return {p[0], p[2], -p[1]};
+        case UpAxis::kMinusZ:
+            return {p[0], -p[1], -p[2]};
+    }
+    return p;
+}
+
+}  // namespace
 
 PreparedSurface prepare_surface(const TriangleMesh& mesh, const InputOptions& input, const RunControl& run) {
     PreparedSurface surface;
     surface.scale = input_scale(mesh, input);
     TriangleMesh scaled = mesh;
-    if (surface.scale != 1.0)
-        for (Vec3& p : scaled.positions_mm) p *= surface.scale;
+    for (Vec3& p : scaled.positions_mm) p = surface.scale * turned_up(p, input.up);
 
     RepairedMesh repaired = repair_mesh(scaled, {}, run.slice(0.0, 0.4));
     surface.found = report_mesh(scaled, CountSelfIntersections::kNo, run.slice(0.4, 0.5));

@@ -13,11 +13,11 @@
 namespace fretwork {
 
 struct PreparedSurface {
-    TriangleMesh mesh;                            ///< scaled and repaired
+    TriangleMesh mesh;                            ///< turned, scaled and repaired
     std::vector<std::uint32_t> source_triangles;  ///< triangle of the input that each triangle is part of
     bool open = false;                            ///< has border edges
     double scale = 1.0;                           ///< factor on the model's coordinates
-    MeshReport found;                             ///< of the scaled mesh before its repair
+    MeshReport found;                             ///< of the turned and scaled mesh before its repair
     std::vector<std::string> warnings;            ///< what was wrong and what was done, with counts
 };
 

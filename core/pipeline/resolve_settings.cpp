@@ -189,6 +189,7 @@ ResolvedSettings resolve_settings(const Settings& settings, const SurfaceFacts& 
     r.solidify.thickness_mm = wall_thickness(settings, r);
     r.solidify.side = settings.shell.side.value_or(surface.open ? WallSide::kCentred : WallSide::kInward);
     r.solidify.simplify_tolerance_voxels = settings.fabrication.simplify_voxels;
+    r.solidify.keep_colors = settings.output.colour == OutputColor::kExemplar;
     r.solidify.target_triangles = static_cast<std::size_t>(settings.fabrication.target_triangles);
 
     r.enlarge.min_feature_mm =

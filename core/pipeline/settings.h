@@ -43,7 +43,11 @@ struct OrientationChoice {
     friend bool operator==(const OrientationChoice&, const OrientationChoice&) = default;
 };
 
+/// The axis of the model that points up when it is printed and held.
+enum class UpAxis { kX, kY, kZ, kMinusX, kMinusY, kMinusZ };
+
 struct InputOptions {
+    UpAxis up = UpAxis::kZ;         ///< the model is turned so that this axis becomes z
     double scale = 1.0;             ///< factor on the model's coordinates
     std::optional<double> size_mm;  ///< longest side after scaling; instead of `scale`
 };
@@ -95,7 +99,7 @@ struct FabricationOptions {
     double nozzle_mm = 0.4;
     std::optional<double> min_feature_mm;
     std::optional<double> min_hole_mm;
-    double simplify_voxels = 0.1;
+    double simplify_voxels = 0.06;
     int target_triangles = 0;
 };
 

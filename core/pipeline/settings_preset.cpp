@@ -18,7 +18,7 @@ void apply_preset(Settings& settings, Preset preset) {
         case Preset::kFine:
             settings.synthesis.search = synthesis_settings(SynthesisPreset::kFine);
             settings.shell.resolution = 512;
-            settings.fabrication.simplify_voxels = 0.05;
+            settings.fabrication.simplify_voxels = 0.03;
             break;
         case Preset::kPaper:
             settings.synthesis.search = synthesis_settings(SynthesisPreset::kPaper);

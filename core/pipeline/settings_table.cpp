@@ -26,6 +26,8 @@ constexpr std::array kColorNames{Named{OutputColor::kExemplar, "exemplar"}, Name
                                  Named{OutputColor::kNone, "none"}};
 constexpr std::array kSideNames{Named{WallSide::kInward, "inward"}, Named{WallSide::kOutward, "outward"},
                                 Named{WallSide::kCentred, "centred"}};
+constexpr std::array kUpNames{Named{UpAxis::kX, "x"},       Named{UpAxis::kY, "y"},       Named{UpAxis::kZ, "z"},
+                              Named{UpAxis::kMinusX, "-x"}, Named{UpAxis::kMinusY, "-y"}, Named{UpAxis::kMinusZ, "-z"}};
 constexpr std::array kRulesNames{Named{ReinforceRules::kDefault, "default"}, Named{ReinforceRules::kPaper, "paper"}};
 
 const auto& names_of(Preset) {
@@ -39,6 +41,9 @@ const auto& names_of(OutputColor) {
 }
 const auto& names_of(WallSide) {
     return kSideNames;
+}
+const auto& names_of(UpAxis) {
+    return kUpNames;
 }
 const auto& names_of(ReinforceRules) {
     return kRulesNames;
@@ -174,6 +179,9 @@ constexpr SettingRange above(double min, double max) {
     }
 
 void add_input(std::vector<SettingInfo>& t) {
+    t.push_back(row("input.up", FIELD(input.up), "1", {},
+                    "Axis of the model that points up; the model is turned so that it becomes z. Regions and forces "
+                    "refer to the turned model."));
     t.push_back(row("input.scale", FIELD(input.scale), "1", above(0, 1e6), "Factor on the model's coordinates."));
     t.push_back(row("input.size_mm", FIELD(input.size_mm), "mm", between(5, 5000),
                     "Longest side of the model; scales it. Instead of input.scale.", "the model's own size"));

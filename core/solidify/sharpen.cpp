@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/float_rounding.h"
 #include "core/mesh/self_intersections.h"
 
 namespace fretwork {
@@ -45,21 +46,10 @@ class Sharpener {
     }
 
   private:
-    /// The volatile step is needed: g++ 12 at -O3 pairs the components up and drops the conversion to float and back
-    /// (seen in its code; the mesh test for float positions fails without it).
-    [[nodiscard]] static Vec3 rounded(const Vec3& p) {
-        Vec3 result;
-        for (int k = 0; k < 3; ++k) {
-            const volatile float component = static_cast<float>(p[k]);
-            result[k] = static_cast<double>(component);
-        }
-        return result;
-    }
-
     void place(std::size_t v) {
         const WallVertex& vertex = wall_.vertices[v];
         const Vec3 move = moved_[v] != 0 ? Vec3(vertex.to_target_mm.cast<double>()) : Vec3(Vec3::Zero());
-        mesh_.positions_mm[v] = rounded(vertex.position_mm + move);
+        mesh_.positions_mm[v] = rounded_to_float(vertex.position_mm + move);
     }
 
     void take_back(std::size_t v) {

@@ -15,7 +15,7 @@ struct SimplifySettings {
     std::size_t target_triangles = 0;  ///< 0: as the tolerance allows; else the tolerance is doubled until it is met
     /// A sample's colour differs from the mean of its triangle's corners by no more in any channel; 255: colours do
     /// not matter.
-    int color_step = 40;
+    int color_step = 24;
     double block_mm = 10.0;  ///< side of the cubes that are simplified in parallel
 };
 

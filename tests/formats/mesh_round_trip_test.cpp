@@ -7,6 +7,7 @@
 
 #include "core/base/counter_random.h"
 #include "core/base/error.h"
+#include "core/base/float_rounding.h"
 #include "formats/mesh_file.h"
 #include "support/make_meshes.h"
 
@@ -39,7 +40,7 @@ TriangleMesh random_mesh(std::uint64_t seed) {
 }
 
 TriangleMesh rounded_to_floats(TriangleMesh mesh) {
-    for (Vec3& p : mesh.positions_mm) p = p.cast<float>().cast<double>();
+    for (Vec3& p : mesh.positions_mm) p = rounded_to_float(p);
     return mesh;
 }
 

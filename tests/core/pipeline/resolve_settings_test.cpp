@@ -4,7 +4,9 @@
 #include <regex>
 
 #include "core/base/error.h"
+#include "core/mesh/mesh_report.h"
 #include "core/pipeline/memory_use.h"
+#include "core/pipeline/prepare_surface.h"
 #include "core/pipeline/settings_schema.h"
 #include "support/make_meshes.h"
 
@@ -91,13 +93,31 @@ TEST_CASE("resolve: a contradiction names both values and one that works", "[pip
     CHECK_NOTHROW(resolve_settings(settings_from(document), kSurface, kExemplar));
 }
 
+TEST_CASE("prepare: the named axis ends up as z, unmirrored", "[pipeline]") {
+    // Sides of 10, 20 and 30 mm and a corner at the origin tell the axes and their directions apart.
+    const TriangleMesh box = testing::make_box(Vec3(0, 0, 0), Vec3(10, 20, 30));
+    const auto turned = [&](UpAxis up) {
+        InputOptions input;
+        input.up = up;
+        const MeshReport report = report_mesh(prepare_surface(box, input).mesh);
+        CHECK(report.volume_mm3 == Approx(6000.0));
+        return std::pair{report.min_mm[2], report.max_mm[2]};
+    };
+    CHECK(turned(UpAxis::kX) == std::pair{0.0, 10.0});
+    CHECK(turned(UpAxis::kY) == std::pair{0.0, 20.0});
+    CHECK(turned(UpAxis::kZ) == std::pair{0.0, 30.0});
+    CHECK(turned(UpAxis::kMinusX) == std::pair{-10.0, 0.0});
+    CHECK(turned(UpAxis::kMinusY) == std::pair{-20.0, 0.0});
+    CHECK(turned(UpAxis::kMinusZ) == std::pair{-30.0, 0.0});
+}
+
 TEST_CASE("resolve: a model in other units is told, not carved", "[pipeline]") {
     const TriangleMesh tiny = testing::make_box(Vec3(0, 0, 0), Vec3(1, 0.5, 0.25));
     CHECK_THROWS_WITH(input_scale(tiny, {}), Catch::Contains("--size-mm") && Catch::Contains("1 mm"));
-    CHECK(input_scale(tiny, {1.0, 80.0}) == Approx(80.0));
-    CHECK(input_scale(tiny, {25.4, {}}) == Approx(25.4));
-    CHECK_THROWS_AS(input_scale(tiny, {2.0, 80.0}), ConstraintsNotMet);
-    CHECK_THROWS_AS(input_scale(tiny, {1e5, {}}), ConstraintsNotMet);
+    CHECK(input_scale(tiny, {.scale = 1.0, .size_mm = 80.0}) == Approx(80.0));
+    CHECK(input_scale(tiny, {.scale = 25.4, .size_mm = {}}) == Approx(25.4));
+    CHECK_THROWS_AS(input_scale(tiny, {.scale = 2.0, .size_mm = 80.0}), ConstraintsNotMet);
+    CHECK_THROWS_AS(input_scale(tiny, {.scale = 1e5, .size_mm = {}}), ConstraintsNotMet);
     CHECK_THROWS_AS(input_scale(TriangleMesh{}, {}), InvalidInput);
 }
 

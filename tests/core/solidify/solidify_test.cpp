@@ -270,6 +270,25 @@ TEST_CASE("solidify: loose pieces go and are counted", "[solidify]") {
     for (const Vec3& p : carved.mesh.positions_mm) REQUIRE(p.z() < 6.5);
 }
 
+TEST_CASE("solidify: a small closed hollow is filled, a large one stays", "[solidify]") {
+    // A disc of less than two walls, solid through, with a bulge in the middle that leaves a lens between its walls.
+    const double wall = 2.4;
+    const TriangleMesh bulged =
+        testing::revolve({{0, -4}, {3, -3.5}, {7, -2}, {24, -2}, {24, 2}, {7, 2}, {3, 3.5}, {0, 4}}, 64, false);
+    const SurfaceVoxels shell = voxelize(bulged, {.resolution = 60});
+    const CarvedMesh disc = solidify(bulged, shell, pattern_of(no_holes()), {.thickness_mm = wall});
+    CHECK(disc.hollows_filled == 1);
+    const MeshReport report = report_mesh(disc.mesh);
+    CHECK(report.components == 1);
+    CHECK(report.volume_mm3 == Approx(testing::volume_mm3(bulged)).epsilon(0.01));
+
+    const TriangleMesh ball = testing::make_icosphere(10.0, 4);
+    const CarvedMesh hollow =
+        solidify(ball, voxelize(ball, {.resolution = 32}), pattern_of(no_holes()), {.thickness_mm = wall});
+    CHECK(hollow.hollows_filled == 0);
+    CHECK(report_mesh(hollow.mesh).components == 2);
+}
+
 TEST_CASE("solidify: the same for any number of threads", "[solidify]") {
     const TriangleMesh torus = testing::make_torus(9.0, 4.0, 48, 24);
     const SurfaceVoxels shell = voxelize(torus, {.resolution = 36});
