@@ -51,6 +51,8 @@ class EdgeSplitter {
     bool pass() {
         const EdgeTable edges(draft_.mesh, draft_.run);
         std::vector<std::uint8_t> touched(draft_.mesh.triangles.size(), 0);
+        // Triangles that this pass made are unknown to `edges` and to `touched`: they wait for the next pass.
+        const auto waits = [&](HalfEdge half) { return half / 3 >= touched.size() || touched[half / 3] != 0; };
         bool again = false;
         for (std::size_t e = 0; e < edges.size(); ++e) {
             const auto half_edges = edges.half_edges(e);
@@ -59,7 +61,7 @@ class EdgeSplitter {
                 const HalfEdge g = mates_[h];
                 if (h == keeper || g == keeper || (g != kNoMate && g < h)) continue;
                 again = true;
-                if (touched[h / 3] != 0 || (g != kNoMate && touched[g / 3] != 0)) continue;
+                if (waits(h) || (g != kNoMate && waits(g))) continue;
                 touched[h / 3] = 1;
                 if (g != kNoMate) touched[g / 3] = 1;
                 split(h, g);
