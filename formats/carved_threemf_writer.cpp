@@ -307,8 +307,7 @@ class PackageWriter {
             static constexpr std::array<std::string_view, 3> kNames = {"<vertex x=\"", "\" y=\"", "\" z=\""};
             for (std::size_t k = 0; k < 3; ++k) {
                 xml += kNames[k];
-                // A plus zero turns minus zero into zero.
-                append_number(xml, static_cast<float>(positions[v][static_cast<int>(k)]) + 0.0f);
+                append_float(xml, positions[v][static_cast<int>(k)]);
             }
             xml += "\"/>\n";
         }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "formats/number_text.h"
 
 namespace fretwork {
 
@@ -19,6 +20,14 @@ void check_mesh_to_write(const MeshToWrite& input) {
     if (!input.triangle_colors.empty() && input.triangle_colors.size() != mesh.triangles.size())
         throw InvalidInput("write mesh: found " + std::to_string(input.triangle_colors.size()) + " colours, expected " +
                            std::to_string(mesh.triangles.size()) + ", one per triangle");
+}
+
+void append_coordinate(std::string& out, double value, CoordinatePrecision precision) {
+    if (precision == CoordinatePrecision::kFloat) {
+        append_float(out, value);
+    } else {
+        append_number(out, value);
+    }
 }
 
 }  // namespace fretwork

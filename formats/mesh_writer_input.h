@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "core/exemplar/image.h"
@@ -9,8 +10,8 @@
 
 namespace fretwork {
 
-/// How coordinates are rounded on the way out. All writers print the shortest text that reads back
-/// as the rounded number.
+/// How coordinates are rounded on the way out. All writers print text that reads back as the rounded number, into a
+/// float or a double.
 enum class CoordinatePrecision {
     kFloat,   ///< 24 bits, what slicers and viewers keep anyway
     kDouble,  ///< as they are; formats that hold floats only (STL) round all the same
@@ -27,5 +28,8 @@ struct MeshToWrite {
 /// Checks what all writers need. \throws InvalidInput  an index past the end, a coordinate that is not
 /// finite, colours whose number differs from that of the triangles.
 void check_mesh_to_write(const MeshToWrite& input);
+
+/// One coordinate as text.
+void append_coordinate(std::string& out, double value, CoordinatePrecision precision);
 
 }  // namespace fretwork

@@ -5,13 +5,12 @@
 namespace fretwork {
 namespace {
 
-template <class Number>
-void append_vertices(std::string& out, const TriangleMesh& mesh) {
+void append_vertices(std::string& out, const TriangleMesh& mesh, CoordinatePrecision precision) {
     for (const Vec3& p : mesh.positions_mm) {
         out += 'v';
         for (int k = 0; k < 3; ++k) {
             out += ' ';
-            append_number(out, static_cast<Number>(p[k]));
+            append_coordinate(out, p[k], precision);
         }
         out += '\n';
     }
@@ -32,11 +31,7 @@ std::string write_obj(const MeshToWrite& input) {
     std::string out = "# Fretwork, millimetres\n";
     out.reserve(64 + 32 * input.mesh.positions_mm.size() + 24 * input.mesh.triangles.size());
     if (!input.name.empty()) out.append("o ").append(one_word(input.name)).append("\n");
-    if (input.precision == CoordinatePrecision::kFloat) {
-        append_vertices<float>(out, input.mesh);
-    } else {
-        append_vertices<double>(out, input.mesh);
-    }
+    append_vertices(out, input.mesh, input.precision);
     for (const Triangle& t : input.mesh.triangles) {
         out += 'f';
         for (const std::uint32_t v : t) {

@@ -5,11 +5,10 @@
 namespace fretwork {
 namespace {
 
-template <class Number>
-void append_vertices(std::string& out, const TriangleMesh& mesh) {
+void append_vertices(std::string& out, const TriangleMesh& mesh, CoordinatePrecision precision) {
     for (const Vec3& p : mesh.positions_mm)
         for (int k = 0; k < 3; ++k) {
-            append_number(out, static_cast<Number>(p[k]));
+            append_coordinate(out, p[k], precision);
             out += k < 2 ? ' ' : '\n';
         }
 }
@@ -24,11 +23,7 @@ std::string write_off(const MeshToWrite& input) {
     out += ' ';
     append_number(out, input.mesh.triangles.size());
     out += " 0\n";
-    if (input.precision == CoordinatePrecision::kFloat) {
-        append_vertices<float>(out, input.mesh);
-    } else {
-        append_vertices<double>(out, input.mesh);
-    }
+    append_vertices(out, input.mesh, input.precision);
     for (std::size_t t = 0; t < input.mesh.triangles.size(); ++t) {
         out += '3';
         for (const std::uint32_t v : input.mesh.triangles[t]) {

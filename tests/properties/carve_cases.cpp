@@ -40,7 +40,7 @@ CarveResult carve_model(const PropertyModel& model, const std::string& pattern, 
     settings.shell.side = model.open ? WallSide::kCentred : WallSide::kInward;
     settings.fabrication.min_feature_mm = 2.5 * voxel_mm;
     settings.fabrication.min_hole_mm = 2.5 * voxel_mm;
-    settings.exemplar.width_mm = 0.4 * longest_side(model.mesh);
+    settings.exemplar.width_mm = 0.9 * longest_side(model.mesh);
     settings.structure.steps.samples = 200;
     settings.structure.steps.max_iterations = 6;
     settings.synthesis.search.seed = seed;

@@ -83,7 +83,9 @@ class Buckets {
     std::map<std::array<int, 3>, std::vector<std::size_t>> cells_;
 };
 
-double uncovered_share(const Samples& samples, const Buckets& buckets, std::uint8_t phase, double radius_mm) {
+/// Discs are placed by their samples alone, so the border of a feature is reached up to `slack_mm`.
+double uncovered_share(const Samples& samples, const Buckets& buckets, std::uint8_t phase, double radius_mm,
+                       double slack_mm) {
     const std::size_t n = samples.points.size();
     std::vector<std::uint8_t> center(n, 0);
     parallel_for(n, 256, [&](std::size_t i) {
@@ -93,7 +95,7 @@ double uncovered_share(const Samples& samples, const Buckets& buckets, std::uint
     std::vector<std::uint8_t> covered(n, 0);
     parallel_for(n, 256, [&](std::size_t i) {
         covered[i] = samples.solid[i] == phase &&
-                     buckets.any_within(i, radius_mm, [&](std::size_t j) { return center[j] != 0; });
+                     buckets.any_within(i, radius_mm + slack_mm, [&](std::size_t j) { return center[j] != 0; });
     });
     std::size_t members = 0;
     std::size_t bare = 0;
@@ -122,8 +124,8 @@ WidthJudgement judge_widths(const TriangleMesh& surface, const TriangleMesh& car
     const auto solid = static_cast<double>(std::count(samples.solid.begin(), samples.solid.end(), 1));
     judgement.solid_share = solid / static_cast<double>(n);
     const Buckets buckets(samples, 0.5 * std::max(solid_width_mm, hole_width_mm));
-    judgement.too_thin_share = uncovered_share(samples, buckets, 1, 0.5 * solid_width_mm);
-    judgement.too_narrow_share = uncovered_share(samples, buckets, 0, 0.5 * hole_width_mm);
+    judgement.too_thin_share = uncovered_share(samples, buckets, 1, 0.5 * solid_width_mm, 2.0 * spacing_mm);
+    judgement.too_narrow_share = uncovered_share(samples, buckets, 0, 0.5 * hole_width_mm, 2.0 * spacing_mm);
     return judgement;
 }
 
