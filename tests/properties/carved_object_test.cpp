@@ -43,7 +43,8 @@ void check_wall(const CarveResult& result, bool centred) {
         deepest = std::max(deepest, d);
         highest = std::min(highest, d);
     }
-    CHECK(deepest <= (centred ? 0.5 * wall : wall) + 0.35 * voxel);
+    // Where a hole meets the inner face the corner may stay off both by some half a voxel.
+    CHECK(deepest <= (centred ? 0.5 * wall : wall) + 0.65 * voxel);
     CHECK(deepest >= (centred ? 0.5 * wall : wall) - 0.35 * voxel);
     CHECK(highest >= -0.35 * voxel);
 }
