@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/thread_order.h"
 
 namespace fretwork {
 namespace {
@@ -57,7 +58,14 @@ struct BoxTree::Impl {
     Vec3 center_mm = Vec3::Zero();
     double scale = 1.0;  // tree units per mm
     std::uint32_t count = 0;
-    std::span<const Box> boxes;  // while building
+
+    /// What Embree's threads ask for while they build.
+    struct Building {
+        const Impl& tree;
+        std::span<const Box> boxes;
+        const RunControl& run;
+        ThreadOrder order;
+    };
 
     ~Impl() {
         if (scene != nullptr) rtcReleaseScene(scene);
@@ -77,18 +85,19 @@ BoxTree::BoxTree(std::span<const Box> boxes, const RunControl& run) : impl_(std:
     tree.center_mm = 0.5 * low + 0.5 * high;
     const double half = (0.5 * high - 0.5 * low).maxCoeff();
     tree.scale = half > 0.0 && std::isfinite(1.0 / half) ? 1.0 / half : 1.0;
-    tree.boxes = boxes;
 
     const RTCDevice device = shared_device();
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, tree.count);
-    rtcSetGeometryUserData(geometry, &tree);
+    Impl::Building building = {tree, boxes, run, {}};
+    rtcSetGeometryUserData(geometry, &building);  // asked for only while the scene is committed
     rtcSetGeometryBoundsFunction(
         geometry,
         [](const RTCBoundsFunctionArguments* args) {
-            const Impl& t = *static_cast<const Impl*>(args->geometryUserPtr);
-            const Vec3 min = t.to_tree(t.boxes[args->primID].min_mm).array() - kSlack;
-            const Vec3 max = t.to_tree(t.boxes[args->primID].max_mm).array() + kSlack;
+            auto& b = *static_cast<Impl::Building*>(args->geometryUserPtr);
+            const ThreadOrder::Task running(b.order);
+            const Vec3 min = b.tree.to_tree(b.boxes[args->primID].min_mm).array() - kSlack;
+            const Vec3 max = b.tree.to_tree(b.boxes[args->primID].max_mm).array() + kSlack;
             RTCBounds& out = *args->bounds_o;
             out.lower_x = static_cast<float>(min[0]), out.upper_x = static_cast<float>(max[0]);
             out.lower_y = static_cast<float>(min[1]), out.upper_y = static_cast<float>(max[1]);
@@ -108,12 +117,16 @@ BoxTree::BoxTree(std::span<const Box> boxes, const RunControl& run) : impl_(std:
     rtcSetSceneFlags(tree.scene, RTC_SCENE_FLAG_ROBUST);
     rtcAttachGeometry(tree.scene, geometry);
     rtcReleaseGeometry(geometry);
-    RunControl stop = run;
     rtcSetSceneProgressMonitorFunction(
-        tree.scene, [](void* self, double) { return !static_cast<const RunControl*>(self)->stop_requested(); }, &stop);
+        tree.scene,
+        [](void* self, double) {
+            auto& b = *static_cast<Impl::Building*>(self);
+            const ThreadOrder::Task running(b.order);
+            return !b.run.stop_requested();
+        },
+        &building);
     rtcCommitScene(tree.scene);
     rtcSetSceneProgressMonitorFunction(tree.scene, nullptr, nullptr);
-    tree.boxes = {};
     const RTCError error = rtcGetDeviceError(device);  // asked for in any case: asking clears it
     run.throw_if_stopped();
     if (error != RTC_ERROR_NONE)

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/thread_order.h"
 
 namespace fretwork {
 
@@ -61,10 +62,18 @@ RayScene::RayScene(const TriangleMesh& mesh, const RunControl& run) : embree_(st
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(embree_->scene, geometry);
     rtcReleaseGeometry(geometry);
+    struct Building {
+        const RunControl& run;
+        ThreadOrder order;
+    } building = {run, {}};
     rtcSetSceneProgressMonitorFunction(
         embree_->scene,
-        [](void* control, double) { return !static_cast<const RunControl*>(control)->stop_requested(); },
-        const_cast<RunControl*>(&run));
+        [](void* self, double) {
+            auto& b = *static_cast<Building*>(self);
+            const ThreadOrder::Task running(b.order);
+            return !b.run.stop_requested();
+        },
+        &building);
     rtcCommitScene(embree_->scene);
     rtcSetSceneProgressMonitorFunction(embree_->scene, nullptr, nullptr);
     run.throw_if_stopped();
