@@ -1,5 +1,5 @@
 # FRETWORK_SANITIZE=address,undefined or thread: instruments the whole build. What belongs to other
-# libraries is named, with the reason, in cmake/sanitizers; the test presets pass those files on.
+# libraries is named, with the reason, in cmake/sanitizers; the test preset passes that file on.
 set(FRETWORK_SANITIZE "" CACHE STRING "Sanitizers to build with, as in -fsanitize=")
 if(FRETWORK_SANITIZE)
   add_compile_options(-fsanitize=${FRETWORK_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
