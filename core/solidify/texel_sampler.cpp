@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace fretwork {
+namespace {
+
+/// Solid pixels closer to the border than this are mixed with the colour of what is empty.
+constexpr float kMixedPx = 1.25F;
+
+}  // namespace
 
 TexelSampler::TexelSampler(const Exemplar& exemplar) : exemplar_(&exemplar) {
     // Rings of pixels around the solid, nearest in steps; ties by index. Exact Euclid would change no colour visibly.
@@ -11,8 +17,10 @@ TexelSampler::TexelSampler(const Exemplar& exemplar) : exemplar_(&exemplar) {
     constexpr std::uint32_t none = ~std::uint32_t{0};
     nearest_solid_.assign(count, none);
     std::vector<std::uint32_t> ring, next;
+    const bool has_core = std::any_of(exemplar.feature_distance_px.begin(), exemplar.feature_distance_px.end(),
+                                      [](float f) { return f <= -kMixedPx; });
     for (std::uint32_t p = 0; p < count; ++p)
-        if (exemplar.solid[p] != 0) {
+        if (exemplar.solid[p] != 0 && (!has_core || exemplar.feature_distance_px[p] <= -kMixedPx)) {
             nearest_solid_[p] = p;
             ring.push_back(p);
         }

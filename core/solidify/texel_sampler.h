@@ -18,7 +18,8 @@ class TexelSampler {
     [[nodiscard]] double feature_distance(double u, double v) const;
 
     /// Bilinear colour; where the exemplar is empty, that of the nearest solid pixel, because what shows there is
-    /// material that was added after the fact.
+    /// material that was added after the fact. So it is in the last pixel of solid, whose colour is mixed with that
+    /// of the opening: hole walls stand there.
     [[nodiscard]] Rgb8 solid_color(double u, double v) const;
 
   private:
