@@ -17,6 +17,7 @@ int report_usage(const CLI::App& program, const CLI::ParseError& error) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): nothing but running out of memory can throw before the parser
 int main(int argc, char** argv) {
     using namespace fretwork::cli;
     CLI::App program("Carves a pattern, given by an example picture, through the shell of an object.", "fretwork");

@@ -20,7 +20,7 @@ void release_bulk(void* block, std::size_t bytes) noexcept;
 template <class T>
 struct UninitializedAllocator : std::allocator<T> {
     template <class U>
-    struct rebind {
+    struct rebind {  // NOLINT(readability-identifier-naming): the name that allocators must have
         using other = UninitializedAllocator<U>;
     };
 
