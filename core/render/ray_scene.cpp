@@ -81,24 +81,30 @@ RayScene::RayScene(const TriangleMesh& mesh, const RunControl& run) : embree_(st
         throw SolverFailure("render: Embree could not build its tree (error " + std::to_string(error) + ")");
 }
 
+namespace {
+
+RTCRay endless_ray(const Vec3f& origin, const Vec3f& direction) {
+    RTCRay ray{};
+    ray.org_x = origin.x();
+    ray.org_y = origin.y();
+    ray.org_z = origin.z();
+    ray.dir_x = direction.x();
+    ray.dir_y = direction.y();
+    ray.dir_z = direction.z();
+    ray.tfar = std::numeric_limits<float>::infinity();
+    ray.mask = ~0u;
+    return ray;
+}
+
+}  // namespace
+
 RayScene::~RayScene() = default;
 
 std::optional<RayScene::Hit> RayScene::first_hit(const Vec3f& origin, const Vec3f& direction) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit query{};
-    query.ray = {origin.x(),
-                 origin.y(),
-                 origin.z(),
-                 0.0f,
-                 direction.x(),
-                 direction.y(),
-                 direction.z(),
-                 0.0f,
-                 std::numeric_limits<float>::infinity(),
-                 ~0u,
-                 0,
-                 0};
+    query.ray = endless_ray(origin, direction);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(embree_->scene, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
@@ -111,18 +117,7 @@ std::optional<RayScene::Hit> RayScene::first_hit(const Vec3f& origin, const Vec3
 bool RayScene::is_blocked(const Vec3f& origin, const Vec3f& direction) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRay ray = {origin.x(),
-                  origin.y(),
-                  origin.z(),
-                  0.0f,
-                  direction.x(),
-                  direction.y(),
-                  direction.z(),
-                  0.0f,
-                  std::numeric_limits<float>::infinity(),
-                  ~0u,
-                  0,
-                  0};
+    RTCRay ray = endless_ray(origin, direction);
     rtcOccluded1(embree_->scene, &context, &ray);
     return ray.tfar < 0;
 }
