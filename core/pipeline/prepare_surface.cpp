@@ -41,14 +41,13 @@ PreparedSurface prepare_surface(const TriangleMesh& mesh, const InputOptions& in
 
     RepairedMesh repaired = repair_mesh(scaled, {}, run.slice(0.0, 0.4));
     surface.found = report_mesh(scaled, CountSelfIntersections::kNo, run.slice(0.4, 0.5));
-    surface.found.self_intersections = find_self_intersections(repaired.mesh, run.slice(0.5, 1.0)).size();
+    surface.found.self_intersections =
+        find_self_intersections(repaired.mesh, run.slice(0.5, 1.0), JoinedBy::kPosition).size();
     surface.found.self_intersections_counted = true;
     surface.warnings = describe(repaired.counts);
     if (surface.found.self_intersections > 0)
         surface.warnings.push_back(
             fmt::format("the model intersects itself in {} pairs of triangles", surface.found.self_intersections));
-    if (repaired.counts.border_edges > 0)
-        surface.warnings.push_back(fmt::format("the model is open: {} border edges", repaired.counts.border_edges));
     surface.open = repaired.counts.border_edges > 0;
     surface.mesh = std::move(repaired.mesh);
     surface.source_triangles = std::move(repaired.source_triangles);

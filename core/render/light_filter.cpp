@@ -8,10 +8,12 @@
 
 namespace fretwork {
 
-std::vector<Vec3f> filter_light(const std::vector<LightPixel>& pixels, int width, int height, float pixel_tangent) {
+std::vector<Vec3f> filter_light(const std::vector<LightPixel>& pixels, int width, int height, float pixel_tangent,
+                                const RunControl& run) {
     constexpr int kReach = 4;
     std::vector<Vec3f> out(pixels.size());
     parallel_for(static_cast<std::size_t>(height), 8, [&](std::size_t row) {
+        run.throw_if_stopped();
         const int y = static_cast<int>(row);
         for (int x = 0; x < width; ++x) {
             const std::size_t i = row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);

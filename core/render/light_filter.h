@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/base/run_control.h"
 #include "core/base/vec.h"
 
 namespace fretwork {
@@ -17,6 +18,8 @@ struct LightPixel {
 /// Replaces `light` by a weighted mean over 9 x 9 pixels; neighbours count the less, the more their normal turns away
 /// and the farther they lie from this pixel's tangent plane. Pixels that met nothing stay as they are.
 /// \param pixel_tangent  width of a pixel over its distance
-std::vector<Vec3f> filter_light(const std::vector<LightPixel>& pixels, int width, int height, float pixel_tangent);
+/// \throws Cancelled  `run` asked to stop
+std::vector<Vec3f> filter_light(const std::vector<LightPixel>& pixels, int width, int height, float pixel_tangent,
+                                const RunControl& run);
 
 }  // namespace fretwork

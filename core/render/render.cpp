@@ -156,7 +156,7 @@ class Picture {
             for (int x = x0; x < std::min(settings_.width, x0 + kTile); ++x) draw_pixel(x, y);
     }
 
-    [[nodiscard]] Image finish() const;
+    [[nodiscard]] Image finish(const RunControl& run) const;
 
   private:
     [[nodiscard]] std::size_t index(int x, int y) const {
@@ -253,7 +253,7 @@ bool Picture::alike(const Surface& a, const Surface& b) const {
            std::abs(a.distance - b.distance) < 6 * pixel_tangent_ * a.distance;
 }
 
-Image Picture::finish() const {
+Image Picture::finish(const RunControl& run) const {
     std::vector<LightPixel> light(pixels_.size());
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
         const PixelSum& p = pixels_[i];
@@ -261,7 +261,7 @@ Image Picture::finish() const {
         const float share = 1.0f / static_cast<float>(p.count_met);
         light[i] = {p.light * share, p.normal * share, p.depth * share};
     }
-    const std::vector<Vec3f> smooth = filter_light(light, settings_.width, settings_.height, pixel_tangent_);
+    const std::vector<Vec3f> smooth = filter_light(light, settings_.width, settings_.height, pixel_tangent_, run);
 
     Image out{settings_.width, settings_.height, {}, false};
     out.pixels.resize(pixels_.size());
@@ -299,7 +299,7 @@ Image render(const TriangleMesh& mesh, std::span<const Rgb8> triangle_colors, co
         });
         run.checkpoint("render", 0.2 + 0.75 * std::min(1.0, static_cast<double>(y0 + kBand) / settings.height));
     }
-    Image image = picture.finish();
+    Image image = picture.finish(run);
     run.checkpoint("render", 1.0);
     return image;
 }

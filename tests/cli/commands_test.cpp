@@ -160,6 +160,21 @@ TEST_CASE("cli: an interrupted run exits with 130 and leaves nothing", "[cli][ca
     CHECK(folder.names() == std::vector<std::string>{"vase.off"});
 }
 
+TEST_CASE("cli: --strict exits with 4 where the stress stays too high, and the result is there all the same", "[cli]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.off", vase_off());
+    // No bridge makes a thin wall of PLA a hundred times safer than handling asks.
+    const auto carve_with = [&](const char* safety_factor, const char* target) {
+        return run_program(carve_line({folder / "vase.off", "--pattern", "cells", "-o", folder / target, "--strict",
+                                       "-D", std::string("structure.safety_factor=") + safety_factor}));
+    };
+    const ProgramResult weak = carve_with("100", "weak.off");
+    CHECK(weak.exit_code == 4);
+    CHECK(weak.err.find("over the allowable stress") != std::string::npos);
+    CHECK(std::filesystem::exists(folder / "weak.off"));
+    CHECK(carve_with("1", "firm.off").exit_code == 0);
+}
+
 TEST_CASE("cli: info describes models, pictures and specs", "[cli]") {
     const TemporaryFolder folder;
     spit(folder / "vase.off", vase_off());
