@@ -22,6 +22,9 @@ std::vector<PropertyModel> property_models() {
     models.push_back({"open bowl", make_open_bowl(20.0, 16, 48), 1, true});
     models.push_back({"soup with flipped, repeated and flat triangles",
                       with_degenerates(with_duplicates(with_flipped(as_soup(make_icosphere(20.0, 3)), 7), 9), 6), 1});
+    // Opposite faces are nearer to each other than two voxels, and the asked wall is thicker than the plate.
+    models.push_back({"thin plate", make_thin_plate(40.0, 30.0, 1.2), 1, false, 48, 0.6});
+    models.push_back({"sphere with a hollow", make_nested_spheres(20.0, 12.0, 4), 2});
     return models;
 }
 

@@ -16,6 +16,7 @@ struct PropertyModel {
     std::size_t parts;  ///< connected components of the surface
     bool open = false;
     int resolution = 48;
+    double inradius_mm = 1e9;  ///< of the material, where it is thinner than two walls
 };
 
 /// Closed, open, thin, several components, genus above one, sharp and messy.
