@@ -18,6 +18,10 @@ constexpr const char* kStage = "enlarge";
 /// Sums of links of one voxel come out a little under or over the half widths they are compared with.
 constexpr float kSlack = 1e-3F;
 
+/// The border is drawn later, between voxels, and may cut a little deeper than the states say: features are that much
+/// wider here, so that what is printed has the asked width.
+constexpr double kDrawnBorder = 0.5;
+
 std::string shortest(double value) {
     std::string text = std::to_string(value);
     text.erase(text.find_last_not_of('0') + 1);
@@ -260,7 +264,7 @@ EnlargeResult enlarge_features(const SurfaceVoxels& shell, const SolidStates& so
     if (solid.size() != shell.size() || (!protect.empty() && protect.size() != shell.size()))
         throw InvalidInput("enlarge: " + std::to_string(solid.size()) + " states and " +
                            std::to_string(protect.size()) + " marks for " + std::to_string(shell.size()) + " voxels");
-    const double feature = checked_width(shell, "min_feature_mm", settings.min_feature_mm);
+    const double feature = checked_width(shell, "min_feature_mm", settings.min_feature_mm) + kDrawnBorder;
     const double hole = checked_width(shell, "min_hole_mm", settings.min_hole_mm);
     run.checkpoint(kStage, 0.0);
     return Enlarger(shell, solid, protect, feature, hole, run).run();

@@ -24,9 +24,10 @@ struct EnlargeResult {
 
 /// Watershed skeleton of the solid voxels on the surface, pruned of leaves and small loops, dilated
 /// geodesically to the printable radius, united with the pattern; then narrow holes are filled.
-/// After it: every solid voxel lies in a geodesic disc of diameter `min_feature_mm` of solid voxels,
-/// every empty voxel in one of diameter `min_hole_mm` of empty voxels, both to one voxel, and each
-/// connected component of the shell carries one connected component of solid.
+/// After it: every solid voxel lies in a geodesic disc of solid voxels of diameter `min_feature_mm` plus
+/// half a voxel (which the border drawn between voxels may take away), every empty voxel in one of
+/// diameter `min_hole_mm` of empty voxels, both to one voxel, and each connected component of the shell
+/// carries one connected component of solid.
 /// \param protect  voxels that must keep their state (kept regions); may be empty
 /// \throws InvalidSetting  a width that is not positive; ConstraintsNotMet  a width under two voxels
 ///                         (names the resolution that would do) or over half of the object.

@@ -87,15 +87,18 @@ TEST_CASE("carve: no feature thinner and no hole narrower than asked", "[propert
     const CarveResult result = carve_model(model, pattern, 5);
     const double voxel = result.report.shell.voxel_mm;
 
-    // The voxels know widths to one voxel and samples to their spacing, so the discs are that much smaller.
+    // Widths round a sharp edge, whose voxels belong to both faces, and widths of holes are known to one voxel; there
+    // the discs are smaller, also by the spacing of the samples.
     const double spacing = 0.25 * voxel;
-    const double width = result.report.mesh.min_feature_mm - voxel - 2.0 * spacing;
-    const WidthJudgement judged =
-        judge_widths(result.surface, result.carved.mesh, 0.3 * result.report.shell.thickness_mm, spacing, width, width);
+    const double slack = voxel + 2.0 * spacing;
+    const bool smooth = model.name != "vase";
+    const WidthJudgement judged = judge_widths(
+        result.surface, result.carved.mesh, 0.3 * result.report.shell.thickness_mm, spacing,
+        result.report.mesh.min_feature_mm - (smooth ? 0.0 : slack), result.report.mesh.min_hole_mm - slack);
     CHECK(judged.samples > 10000);
     CHECK(judged.solid_share > 0.2);
     CHECK(judged.solid_share < 0.95);
-    CHECK(judged.too_thin_share < 0.002);
+    CHECK(judged.too_thin_share < (smooth ? 0.0005 : 0.002));
     CHECK(judged.too_narrow_share < 0.01);  // necks between two wide places of a hole may be narrower
 }
 

@@ -66,7 +66,7 @@ class Buckets {
                     if (found == cells_.end()) continue;
                     for (const std::size_t j : found->second)
                         if ((samples_.points[j] - p).squaredNorm() <= radius_mm * radius_mm &&
-                            samples_.normals[j].dot(samples_.normals[i]) > 0.3 && visit(j))
+                            samples_.normals[j].dot(samples_.normals[i]) > -0.3 && visit(j))
                             return true;
                 }
         return false;

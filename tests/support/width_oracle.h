@@ -20,7 +20,7 @@ struct WidthJudgement {
 
 /// Spreads samples over `surface` (about one per `spacing_mm`^2), looks up whether the wall is there by going
 /// `depth_mm` along the inward normal and asking `carved`, and tests each sample against discs of samples.
-/// Discs are Euclidean balls around samples, restricted to samples whose normals agree.
+/// Discs are Euclidean balls around samples; they reach round an edge, not through to the other side of a wall.
 WidthJudgement judge_widths(const TriangleMesh& surface, const TriangleMesh& carved, double depth_mm, double spacing_mm,
                             double solid_width_mm, double hole_width_mm);
 
