@@ -8,20 +8,25 @@ CollapseMesh::CollapseMesh(const TriangleMesh& mesh)
     : positions_(mesh.positions_mm),
       triangles_(mesh.triangles),
       across_(3 * mesh.triangles.size(), kNone),
-      corner_of_(mesh.positions_mm.size(), kNone) {
-    struct Side {
-        std::uint64_t edge;
-        Corner facing;
-    };
-    std::vector<Side> sides(across_.size());
+      corner_of_(mesh.positions_mm.size(), kNone),
+      dead_(mesh.triangles.size(), 0) {
+    // The corners that face an edge, filed under its lower vertex; a few each, so that partners are found by looking.
+    std::vector<std::uint32_t> first(positions_.size() + 1, 0);
+    const auto low = [&](Corner c) { return std::min(vertex(next(c)), vertex(previous(c))); };
+    const auto high = [&](Corner c) { return std::max(vertex(next(c)), vertex(previous(c))); };
     for (Corner c = 0; c < across_.size(); ++c) {
-        const std::uint64_t a = vertex(next(c)), b = vertex(previous(c));
-        sides[c] = {(std::min(a, b) << 32) | std::max(a, b), c};
+        ++first[low(c) + 1];
         corner_of_[vertex(c)] = c;
     }
-    std::sort(sides.begin(), sides.end(),
-              [](const Side& s, const Side& t) { return s.edge != t.edge ? s.edge < t.edge : s.facing < t.facing; });
-    for (std::size_t i = 0; i + 1 < sides.size(); i += 2) link(sides[i].facing, sides[i + 1].facing);
+    for (std::size_t v = 0; v < positions_.size(); ++v) first[v + 1] += first[v];
+    std::vector<Corner> facing(across_.size());
+    std::vector<std::uint32_t> end(first.begin(), first.end() - 1);
+    for (Corner c = 0; c < across_.size(); ++c) {
+        const std::uint32_t v = low(c);
+        for (std::uint32_t i = first[v]; i < end[v] && across_[c] == kNone; ++i)
+            if (across_[facing[i]] == kNone && high(facing[i]) == high(c)) link(facing[i], c);
+        facing[end[v]++] = c;
+    }
 }
 
 void CollapseMesh::link(Corner a, Corner b) {
@@ -35,15 +40,14 @@ void CollapseMesh::corners_around(std::uint32_t v, std::vector<Corner>& corners)
     Corner c = start;
     do {
         corners.push_back(c);
-        // Over the edge from v to the previous corner's vertex, which next(c) faces.
-        c = next(across_[next(c)]);
+        c = turned(c);
     } while (c != start);
 }
 
 bool CollapseMesh::degree_at_least_four(Corner c) const {
     Corner d = c;
     for (int k = 0; k < 3; ++k) {
-        d = next(across_[next(d)]);
+        d = turned(d);
         if (d == c) return false;
     }
     return true;
@@ -64,7 +68,7 @@ bool CollapseMesh::may_collapse(const std::vector<Corner>& around_u, Corner edge
         if (w != apex_a && w != apex_b)
             for (const Corner d : around_u)
                 if (vertex(next(d)) == w) return false;
-        c = next(across_[next(c)]);
+        c = turned(c);
     } while (c != at_v);
     return true;
 }
@@ -81,13 +85,34 @@ void CollapseMesh::collapse(const std::vector<Corner>& around_u, Corner edge) {
     const Corner b_at_u = across_[b_v], b_at_v = across_[b_u];
     for (const Corner c : around_u)
         if (c / 3 != dead_a && c / 3 != dead_b) triangles_[c / 3][c % 3] = v;
-    triangles_[dead_a] = triangles_[dead_b] = {kNone, kNone, kNone};
+    dead_[dead_a] = dead_[dead_b] = 1;
     link(a_at_u, a_at_v);
     link(b_at_u, b_at_v);
     corner_of_[u] = kNone;
     // A corner that faces the merged side has its ends next to it.
     for (const Corner c : {a_at_u, b_at_u})
         for (const Corner end : {next(c), previous(c)}) corner_of_[vertex(end)] = end;
+}
+
+void CollapseMesh::undo(Corner edge, std::span<const Corner> stayed) {
+    const std::uint32_t u = vertex(edge);
+    const Corner other = facing(edge);
+    dead_[edge / 3] = dead_[other / 3] = 0;
+    for (const Corner c : stayed) triangles_[c / 3][c % 3] = u;
+    for (const Corner c : {edge, next(edge), next(other), previous(other)}) across_[across_[c]] = c;
+    const auto stands = [&](Corner c) {
+        for (const Corner at : {c, next(c), previous(c)}) corner_of_[vertex(at)] = at;
+    };
+    for (const Corner c : stayed) stands(c);
+    stands(edge);
+    stands(other);
+}
+
+std::array<std::uint32_t, 4> CollapseMesh::touched_by(Corner edge) const {
+    const Corner other = facing(edge);
+    const std::uint32_t u = vertex(edge);
+    const Corner at_u = vertex(next(other)) == u ? next(other) : previous(other);
+    return {edge / 3, other / 3, across_[edge] / 3, across_[at_u] / 3};
 }
 
 TriangleMesh CollapseMesh::extract() const {

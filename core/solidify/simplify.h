@@ -22,8 +22,8 @@ struct SimplifySettings {
 /// Collapses edges onto one of their ends, so that every vertex of the result is a vertex of the input. Each vertex
 /// that goes stays as a sample with the triangle nearest to it, and no later collapse may leave a sample farther from
 /// the mesh than the tolerance. Needs a closed manifold mesh and keeps it one; triangles do not turn over.
-/// The result is checked for self-intersections with exact predicates; where triangles meet, the neighbourhood is
-/// left as it came and the rest is done again. The last resort is the mesh as it came.
+/// The result is checked for self-intersections with exact predicates; where triangles meet, the last collapses around
+/// them are taken back until nothing meets. At worst that is the mesh as it came.
 /// The result does not depend on the number of threads: blocks are fixed cubes, and a vertex goes only if all its
 /// neighbours lie in its own block; a second and a third pass with shifted cubes treat the seams.
 ///
