@@ -14,7 +14,10 @@ constexpr int kMaxSteps = 7;
 class EdgeSearch {
   public:
     EdgeSearch(const WallField& field, const EdgeEnd& inside, const EdgeEnd& outside)
-        : field_(field), inside_(inside), outside_(outside) {
+        : field_(field),
+          inside_(inside),
+          outside_(outside),
+          solid_(std::max(inside.pattern, outside.pattern) < WallField::surely_solid()) {
         const bool crosses = field.limits().signed_distance && (inside.phi < 0.0) != (outside.phi < 0.0);
         if (crosses) {
             if (const auto hit = field.tree().first_hit(inside.position_mm, outside.position_mm)) {
@@ -58,9 +61,8 @@ class EdgeSearch {
         const bool surface_is_upper = field_.limits().upper == 0.0;
         const double beyond = surface_is_upper ? outside_.phi : -outside_.phi;
         if (beyond < 0.0) return false;
-        double pattern = std::max(inside_.pattern, outside_.pattern);
-        // Far from every border the pattern need not be asked again.
-        if (pattern > -1.5) pattern = field_.pattern_at(at(*switch_at_), switch_triangle_);
+        const double pattern =
+            solid_ ? std::max(inside_.pattern, outside_.pattern) : field_.pattern_at(at(*switch_at_), switch_triangle_);
         if (pattern <= 0.0) {
             v.face = surface_is_upper ? WallFace::kUpper : WallFace::kLower;
             v.triangle = switch_triangle_;
@@ -77,6 +79,12 @@ class EdgeSearch {
         return switch_at_ && s > *switch_at_ ? -sign_inside : sign_inside;
     }
 
+    /// The surface is no farther from a point of the edge than by way of an end.
+    [[nodiscard]] double reach(double s) const {
+        const double length = (outside_.position_mm - inside_.position_mm).norm() / field_.voxel_mm();
+        return std::min(std::abs(inside_.phi) + s * length, std::abs(outside_.phi) + (1.0 - s) * length) + 1e-4;
+    }
+
     double search() {
         double s = low_;
         int side = 0;
@@ -88,7 +96,9 @@ class EdgeSearch {
             if (step >= 3 && high_ - low_ > 0.5 * width) share = 0.5;
             width = high_ - low_;
             s = low_ + share * (high_ - low_);
-            last_ = field_.sample(at(s), sign_at(s));
+            last_ = solid_
+                        ? field_.sample_slab(at(s), sign_at(s), reach(s), std::max(inside_.pattern, outside_.pattern))
+                        : field_.sample(at(s), sign_at(s), reach(s));
             if (!last_.found) break;
             const double f = field_.value(last_);
             if (std::abs(f) < kResidual) break;
@@ -122,6 +132,7 @@ class EdgeSearch {
     const WallField& field_;
     const EdgeEnd& inside_;
     const EdgeEnd& outside_;
+    bool solid_;                       ///< far from every border of the pattern, which need not be asked again
     std::optional<double> switch_at_;  ///< where phi changes sign
     std::uint32_t switch_triangle_ = 0;
     double low_ = 0.0, high_ = 1.0, f_low_ = -1.0, f_high_ = 1.0;

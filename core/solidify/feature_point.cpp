@@ -17,6 +17,16 @@ constexpr int kRounds = 4;
 using Vec2d = Eigen::Vector2d;
 using Mat2d = Eigen::Matrix2d;
 
+/// The share of the way between two points, by their barycentric coordinates, after which the least falls below
+/// `margin`.
+template <class Bary>
+double share_inside(const Bary& from, const Bary& to, double margin) {
+    double share = 1.0;
+    for (Eigen::Index k = 0; k < from.size(); ++k)
+        if (to[k] < margin && to[k] < from[k]) share = std::min(share, (from[k] - margin) / (from[k] - to[k]));
+    return std::max(share, 0.0);
+}
+
 /// Plane coordinates of one lattice triangle, in voxels from its first corner.
 class TrianglePlane {
   public:
@@ -39,14 +49,14 @@ class TrianglePlane {
         return inverse_.transpose() * Vec2d(f1 - f0, f2 - f0);
     }
 
-    /// The point inside, by at least `margin`, next to q.
-    [[nodiscard]] Vec2d clamped(const Vec2d& q, double margin) const {
-        const Vec2d b = inverse_ * q;
-        Vec3 bary(1.0 - b.x() - b.y(), b.x(), b.y());
-        if (bary.minCoeff() >= margin) return q;
-        bary = bary.cwiseMax(2.0 * margin);
-        bary /= bary.sum();
-        return sides_ * Vec2d(bary[1], bary[2]);
+    /// Where the way from `start` to q leaves the triangle less its margin; q if it does not. The faces that meet in q
+    /// pass through the way's sides, so that no point of it is farther off them than `start`.
+    [[nodiscard]] Vec2d clamped(const Vec2d& q, const Vec2d& start, double margin) const {
+        const auto bary = [&](const Vec2d& p) {
+            const Vec2d b = inverse_ * p;
+            return Vec3(1.0 - b.x() - b.y(), b.x(), b.y());
+        };
+        return start + share_inside(bary(start), bary(q), margin) * (q - start);
     }
 
   private:
@@ -72,8 +82,9 @@ double face_value(const WallField& field, const WallSample& s, WallFace face) {
     return s.pattern;
 }
 
-/// The sign of phi all over the lattice triangle, or 0 if the surface passes through it.
-double common_sign(const std::array<EdgeEnd, 3>& corner) {
+/// The sign of phi all over the simplex, or 0 if the surface passes through it.
+template <std::size_t N>
+double common_sign(const std::array<EdgeEnd, N>& corner) {
     const bool negative = corner[0].phi < 0.0;
     for (const EdgeEnd& c : corner)
         if ((c.phi < 0.0) != negative) return 0.0;
@@ -117,14 +128,14 @@ std::optional<WallVertex> feature_on_triangle(const WallField& field, const std:
         v.feature = true;
         v.face = a.face == WallFace::kPattern ? b.face : a.face;
         v.triangle = s.triangle;
-        v.position_mm = plane.lift(plane.clamped(q, margin));
+        v.position_mm = plane.lift(plane.clamped(q, start, 2.0 * margin));
         v.to_target_mm = (plane.lift(q) - v.position_mm).cast<float>();
         return v;
     }
     return std::nullopt;
 }
 
-std::optional<WallVertex> corner_in_tetrahedron(const std::array<EdgeEnd, 4>& corner,
+std::optional<WallVertex> corner_in_tetrahedron(const WallField& field, const std::array<EdgeEnd, 4>& corner,
                                                 std::span<const WallVertex* const> loop, double margin) {
     Eigen::Matrix3d sides;
     for (int k = 0; k < 3; ++k)
@@ -151,15 +162,14 @@ std::optional<WallVertex> corner_in_tetrahedron(const std::array<EdgeEnd, 4>& co
     const Vec3 target = center + planes.ldlt().solve(right);
     const double longest = (corner[3].position_mm - corner[0].position_mm).norm();
     if (!((target - center).norm() < longest)) return std::nullopt;
-    const Vec3 b = inverse * (target - corner[0].position_mm);
-    Eigen::Vector4d bary(1.0 - b.sum(), b[0], b[1], b[2]);
-    if (bary.minCoeff() < margin) {
-        bary = bary.cwiseMax(2.0 * margin);
-        bary /= bary.sum();
-        result.position_mm = corner[0].position_mm + sides * bary.tail<3>();
-    } else {
-        result.position_mm = target;
-    }
+    // Nearly parallel planes meet anywhere.
+    const WallSample s = field.sample(target, common_sign(corner));
+    if (!s.found || std::abs(field.value(s)) > kAccepted) return std::nullopt;
+    const auto bary = [&](const Vec3& p) {
+        const Vec3 b = inverse * (p - corner[0].position_mm);
+        return Eigen::Vector4d(1.0 - b.sum(), b[0], b[1], b[2]);
+    };
+    result.position_mm = center + share_inside(bary(center), bary(target), 2.0 * margin) * (target - center);
     result.to_target_mm = (target - result.position_mm).cast<float>();
     return result;
 }

@@ -20,8 +20,9 @@ namespace fretwork {
 std::optional<WallVertex> feature_on_triangle(const WallField& field, const std::array<EdgeEnd, 3>& corner,
                                               const WallVertex& a, const WallVertex& b, double margin);
 
-/// Point of the tetrahedron where the faces of its vertices meet, by least squares over their tangent planes.
-std::optional<WallVertex> corner_in_tetrahedron(const std::array<EdgeEnd, 4>& corner,
+/// Point of the tetrahedron where the faces of its vertices meet, by least squares over their tangent planes. Empty
+/// where that is not on the wall's surface.
+std::optional<WallVertex> corner_in_tetrahedron(const WallField& field, const std::array<EdgeEnd, 4>& corner,
                                                 std::span<const WallVertex* const> loop, double margin);
 
 }  // namespace fretwork

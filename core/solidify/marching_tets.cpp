@@ -302,7 +302,8 @@ class TetMarcher {
         for (std::size_t k = 0; k < 4; ++k) ends[k] = end_at(corner[tet.corner[k]], shifted(c, tet.corner[k]));
         std::array<const WallVertex*, 8> around{};
         for (std::size_t k = 0; k < loop.size; ++k) around[k] = &vertices_[loop.vertex[k]];
-        const std::optional<WallVertex> center = corner_in_tetrahedron(ends, {around.data(), loop.size}, clamp_);
+        const std::optional<WallVertex> center =
+            corner_in_tetrahedron(field_, ends, {around.data(), loop.size}, clamp_);
         if (!center) return false;
         const auto id = kCornerFlag | static_cast<std::uint32_t>(chunk.corners.size());
         chunk.corners.push_back(*center);

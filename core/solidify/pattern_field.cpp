@@ -26,6 +26,10 @@ constexpr double kLabelSlack = 0.75;
 /// Two neighbouring labels tell the same story if one predicts the other's distance to within this, in voxels.
 constexpr double kAgreement = 0.4;
 
+/// A voxel this far from the border, by the kernel and the slack, speaks for all points nearest to it, in voxels.
+constexpr float kFarFromBorder = 3.0F;
+static_assert(kFarFromBorder > kKernel + kLabelSlack + 0.5 && kFarFromBorder < kBorderReach);
+
 std::vector<Vec3f> unit_normals(const TriangleMesh& mesh) {
     std::vector<Vec3f> normals(mesh.triangles.size(), Vec3f::Zero());
     for (std::size_t t = 0; t < normals.size(); ++t) {
@@ -156,6 +160,7 @@ class VoxelPattern {
         const Vec3f& normal = normals_[triangle];
         const VoxelIndex base = index_.nearest(p, normal);
         if (base == ShellIndex::kNone) return kBorderReach;
+        if (std::abs(value_[base]) > kFarFromBorder) return static_cast<double>(value_[base]);
         double sum = 0.0, weights = 0.0;
         const auto add = [&](VoxelIndex v) {
             const double r2 = (p - shell_.points_mm[v]).squaredNorm() /

@@ -2,11 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/base/float_rounding.h"
+#include "core/base/parallel.h"
 #include "core/mesh/self_intersections.h"
 
 namespace fretwork {
@@ -26,21 +26,23 @@ class Sharpener {
         : wall_(wall), voxel_mm_(voxel_mm), run_(run), moved_(wall.vertices.size(), 0) {
         mesh_.triangles = wall.triangles;
         mesh_.positions_mm.resize(wall.vertices.size());
-        for (std::size_t v = 0; v < wall.vertices.size(); ++v) {
+        parallel_for(wall.vertices.size(), 1 << 14, [&](std::size_t v) {
             const auto length = static_cast<double>(wall.vertices[v].to_target_mm.norm());
             moved_[v] = length > kShortest * voxel_mm ? 1 : 0;
             place(v);
-        }
+        });
     }
 
     TriangleMesh run() {
         take_back_flips();
-        for (int round = 0; round < kRounds; ++round) {
+        std::vector<std::uint32_t> changed = triangles_at([&](std::uint32_t v) { return moved_[v] != 0; });
+        for (int round = 0; round < kRounds && !changed.empty(); ++round) {
             run_.throw_if_stopped();
-            const bool last = round + 1 == kRounds;
-            if (!take_back_meetings()) break;
-            if (last)
-                for (std::size_t v = 0; v < moved_.size(); ++v) take_back(v);
+            std::vector<std::uint8_t> back = corners_of_meetings(changed);
+            if (round + 1 == kRounds && std::count(back.begin(), back.end(), 1) > 0) back = moved_;
+            for (std::size_t v = 0; v < moved_.size(); ++v)
+                if (back[v] != 0) take_back(v);
+            changed = triangles_at([&](std::uint32_t v) { return back[v] != 0; });
         }
         return std::move(mesh_);
     }
@@ -76,50 +78,24 @@ class Sharpener {
         for (const std::uint32_t v : bad) take_back(v);
     }
 
-    /// Triangles near moved ones: those with a corner in a cell next to a cell of a moved triangle's corner.
-    [[nodiscard]] std::vector<std::uint32_t> triangles_to_check() const {
-        std::vector<std::uint64_t> cells;
-        const auto key = [&](const Vec3& p, int dx, int dy, int dz) {
-            const auto part = [&](double x, int d) {
-                return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / voxel_mm_)) + d +
-                                                  (1 << 20)) &
-                       0x1FFFFFU;
-            };
-            return (part(p[2], dz) << 42) | (part(p[1], dy) << 21) | part(p[0], dx);
-        };
-        for (std::size_t v = 0; v < moved_.size(); ++v) {
-            if (moved_[v] == 0) continue;
-            for (int i = 0; i < 27; ++i)
-                cells.push_back(key(mesh_.positions_mm[v], i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-        }
-        std::sort(cells.begin(), cells.end());
-        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-        std::vector<std::uint8_t> near(moved_.size());
-        for (std::size_t v = 0; v < near.size(); ++v)
-            near[v] = std::binary_search(cells.begin(), cells.end(), key(mesh_.positions_mm[v], 0, 0, 0)) ? 1 : 0;
+    template <class Wanted>
+    [[nodiscard]] std::vector<std::uint32_t> triangles_at(const Wanted& wanted) const {
         std::vector<std::uint32_t> chosen;
-        for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
-            for (const std::uint32_t v : mesh_.triangles[t])
-                if (near[v] != 0) {
-                    chosen.push_back(t);
-                    break;
-                }
+        for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+            const Triangle& k = mesh_.triangles[t];
+            if (wanted(k[0]) || wanted(k[1]) || wanted(k[2])) chosen.push_back(t);
+        }
         return chosen;
     }
 
-    bool take_back_meetings() {
-        const std::vector<std::uint32_t> chosen = triangles_to_check();
-        TriangleMesh part;
-        part.positions_mm = mesh_.positions_mm;
-        for (const std::uint32_t t : chosen) part.triangles.push_back(mesh_.triangles[t]);
-        bool changed = false;
-        for (const auto& [a, b] : find_self_intersections(part, run_))
+    /// Per vertex: whether it has moved and is a corner of a triangle that meets another. Triangles that are as the
+    /// lattice made them do not meet, so that it suffices to look at those that changed.
+    [[nodiscard]] std::vector<std::uint8_t> corners_of_meetings(const std::vector<std::uint32_t>& changed) const {
+        std::vector<std::uint8_t> corner(moved_.size(), 0);
+        for (const auto& [a, b] : find_self_intersections_among(mesh_, changed, run_))
             for (const std::uint32_t t : {a, b})
-                for (const std::uint32_t v : part.triangles[t]) {
-                    changed = changed || moved_[v] != 0;
-                    take_back(v);
-                }
-        return changed;
+                for (const std::uint32_t v : mesh_.triangles[t]) corner[v] = moved_[v];
+        return corner;
     }
 
     const WallMesh& wall_;

@@ -8,8 +8,8 @@
 namespace fretwork {
 
 /// Rounds all positions to float, with feature vertices moved to their targets. A move is taken back where it turns a
-/// triangle over or makes triangles meet: the nearby part of the mesh is checked with exact predicates until nothing
-/// meets, so that the result is as free of self-intersections as the lattice mesh is by construction.
+/// triangle over or makes triangles meet: what has changed is checked with exact predicates until nothing meets, so
+/// that the result is as free of self-intersections as the lattice mesh is by construction.
 TriangleMesh sharpened_mesh(const WallMesh& wall, double voxel_mm, const RunControl& run);
 
 }  // namespace fretwork

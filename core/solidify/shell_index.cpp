@@ -10,6 +10,13 @@ constexpr std::int32_t kBlockBits = 3;
 constexpr std::int32_t kBlockMask = (1 << kBlockBits) - 1;
 constexpr std::size_t kBlockCells = 512;
 
+/// For the rounding of positions, in voxels.
+constexpr double kSlack = 1e-3;
+
+bool same_cell(const VoxelCoord& a, const VoxelCoord& b) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 std::size_t cell_in_block(const VoxelCoord& c) {
     return static_cast<std::size_t>(((c[2] & kBlockMask) << (2 * kBlockBits)) + ((c[1] & kBlockMask) << kBlockBits) +
                                     (c[0] & kBlockMask));
@@ -54,20 +61,34 @@ VoxelIndex ShellIndex::nearest(const Vec3& point_mm, const Vec3f& normal) const 
                            static_cast<std::int32_t>(std::floor(q[2]))};
     VoxelIndex best = kNone;
     double best_score = std::numeric_limits<double>::infinity();
-    for (std::int32_t z = at[2] - 1; z <= at[2] + 1; ++z)
-        for (std::int32_t y = at[1] - 1; y <= at[1] + 1; ++y)
-            for (std::int32_t x = at[0] - 1; x <= at[0] + 1; ++x) {
-                const VoxelCoord c = {x, y, z};
-                for (VoxelIndex v = first_in_cell(c); v < shell_->size() && shell_->coords[v] == c; ++v) {
-                    const double facing = static_cast<double>(shell_->normals[v].dot(normal));
-                    // A sheet that faces away is taken only where there is no other: at the rim of a thin plate.
-                    const double score =
-                        (shell_->points_mm[v] - point_mm).norm() / grid.voxel_mm + (facing < 0.0 ? 4.0 : 0.0);
-                    if (score < best_score) {
-                        best_score = score;
-                        best = v;
-                    }
+    const auto look_into = [&](const VoxelCoord& c) {
+        const VoxelIndex first = first_in_cell(c);
+        if (first == kNone) return;
+        for (VoxelIndex v = first; v < shell_->size() && same_cell(shell_->coords[v], c); ++v) {
+            const double facing = static_cast<double>(shell_->normals[v].dot(normal));
+            // A sheet that faces away is taken only where there is no other: at the rim of a thin plate.
+            const double score = (shell_->points_mm[v] - point_mm).norm() / grid.voxel_mm + (facing < 0.0 ? 4.0 : 0.0);
+            if (score < best_score || (score == best_score && v < best)) {
+                best_score = score;
+                best = v;
+            }
+        }
+    };
+    look_into(at);
+    // A voxel's point lies in its cell: cells farther than the best so far hold nothing better.
+    for (std::int32_t dz = -1; dz <= 1; ++dz)
+        for (std::int32_t dy = -1; dy <= 1; ++dy)
+            for (std::int32_t dx = -1; dx <= 1; ++dx) {
+                const VoxelCoord way = {dx, dy, dz};
+                double gap2 = 0.0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const double share = q[static_cast<Eigen::Index>(k)] - at[k];
+                    const double gap = way[k] == 0 ? 0.0 : way[k] < 0 ? share : 1.0 - share;
+                    gap2 += gap * gap;
                 }
+                if (dx == 0 && dy == 0 && dz == 0) continue;
+                if (best != kNone && gap2 > (best_score + kSlack) * (best_score + kSlack)) continue;
+                look_into({at[0] + dx, at[1] + dy, at[2] + dz});
             }
     return best;
 }

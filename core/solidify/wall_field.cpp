@@ -29,9 +29,16 @@ Vec3 WallField::closest_on(std::uint32_t triangle, const Vec3& p) const {
     return closest_on_triangle(p, mesh_.positions_mm[a], mesh_.positions_mm[b], mesh_.positions_mm[c]);
 }
 
-WallSample WallField::sample(const Vec3& point_mm, double sign) const {
+WallSample WallField::sample(const Vec3& point_mm, double sign, double reach_voxels) const {
+    WallSample s = sample_slab(point_mm, sign, reach_voxels, 0.0);
+    if (s.found) s.pattern = pattern_at(s.closest_mm, s.triangle);
+    return s;
+}
+
+WallSample WallField::sample_slab(const Vec3& point_mm, double sign, double reach_voxels, double pattern) const {
     WallSample s;
-    const ClosestPoint closest = tree_.closest(point_mm, (reach_voxels_ + 1.0) * voxel_mm_);
+    const double reach = reach_voxels > 0.0 ? reach_voxels : reach_voxels_ + 1.0;
+    const ClosestPoint closest = tree_.closest(point_mm, reach * voxel_mm_);
     if (!closest.found()) return s;
     s.found = true;
     s.closest_mm = closest.point_mm;
@@ -39,7 +46,7 @@ WallSample WallField::sample(const Vec3& point_mm, double sign) const {
     if (!limits_.signed_distance) sign = 1.0;
     if (sign == 0.0) sign = normals_[s.triangle].dot(point_mm - s.closest_mm) < 0.0 ? -1.0 : 1.0;
     s.phi = std::copysign(closest.distance_mm / voxel_mm_, sign);
-    s.pattern = pattern_at(s.closest_mm, s.triangle);
+    s.pattern = pattern;
     return s;
 }
 

@@ -1,8 +1,10 @@
 #include "core/solidify/wall_lattice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/parallel.h"
 
@@ -11,11 +13,18 @@ namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-/// Half the diagonal between the extreme nodes of a block, and of a 4^3 corner of one, in voxels.
+constexpr std::int32_t kCorner = 4;  ///< nodes along a corner of a block
+constexpr std::size_t kCornerNodes = 64;
+
+/// Half the diagonal between the extreme nodes of a block, and of a corner of one, in voxels.
 const double kBlockRadius = 3.5 * std::sqrt(3.0);
 const double kCornerRadius = 1.5 * std::sqrt(3.0);
 
-/// Distances of one block. A query in the middle of the block, then of each of its 4^3 corners, bounds all others.
+/// For the rounding of distances to float, in voxels.
+constexpr double kRounding = 1e-4;
+
+/// Signed distances of one block. A query in the middle of the block, then of each of its 4^3 corners, bounds all
+/// others.
 class BlockDistances {
   public:
     BlockDistances(const WallLattice& lattice, const WallField& field, NodeValues& values)
@@ -27,9 +36,14 @@ class BlockDistances {
         const double to_middle = distance_to(middle(base, 8), field_.reach_voxels() + kBlockRadius);
         if (to_middle > field_.reach_voxels() + kBlockRadius) return;
         for (unsigned corner = 0; corner < 8; ++corner) {
-            NodeCoord low = base;
-            for (std::size_t k = 0; k < 3; ++k) low[k] += ((corner >> k) & 1U) != 0 ? 4 : 0;
-            measure_corner(low, first, base);
+            low_ = base;
+            first_ = first;
+            for (std::size_t k = 0; k < 3; ++k)
+                if (((corner >> k) & 1U) != 0) {
+                    low_[k] += kCorner;
+                    first_ += static_cast<NodeIndex>(kCorner << (3 * k));
+                }
+            measure_corner();
         }
     }
 
@@ -42,83 +56,89 @@ class BlockDistances {
         return field_.tree().closest(p, reach_voxels * lattice_.step_mm()).distance_mm / lattice_.step_mm();
     }
 
-    void measure_corner(const NodeCoord& low, NodeIndex first, const NodeCoord& base) {
-        const Vec3 center = middle(low, 4);
+    /// Nodes of the corner are numbered 16 z + 4 y + x.
+    [[nodiscard]] NodeIndex node(std::size_t i) const {
+        return first_ + static_cast<NodeIndex>(((i >> 4) << 6) + (((i >> 2) & 3) << 3) + (i & 3));
+    }
+    [[nodiscard]] Vec3 position(std::size_t i) const {
+        return lattice_.position_mm({low_[0] + static_cast<std::int32_t>(i & 3),
+                                     low_[1] + static_cast<std::int32_t>((i >> 2) & 3),
+                                     low_[2] + static_cast<std::int32_t>(i >> 4)});
+    }
+
+    void measure_corner() {
+        const Vec3 center = middle(low_, kCorner);
         const double to_center = distance_to(center, field_.reach_voxels() + kCornerRadius);
         if (to_center > field_.reach_voxels() + kCornerRadius) return;
-        for (std::int32_t z = 0; z < 4; ++z)
-            for (std::int32_t y = 0; y < 4; ++y)
-                for (std::int32_t x = 0; x < 4; ++x) {
-                    const NodeCoord c = {low[0] + x, low[1] + y, low[2] + z};
-                    const Vec3 p = lattice_.position_mm(c);
-                    const double bound = to_center + (p - center).norm() / lattice_.step_mm() + 1e-6;
-                    const double reach = std::min(bound, field_.reach_voxels()) * lattice_.step_mm();
-                    const ClosestPoint closest = field_.tree().closest(p, reach);
-                    if (!closest.found()) continue;
-                    const NodeIndex node =
-                        first +
-                        static_cast<NodeIndex>(((c[2] - base[2]) * 8 + (c[1] - base[1])) * 8 + (c[0] - base[0]));
-                    values_.phi[node] = static_cast<float>(closest.distance_mm / lattice_.step_mm());
-                    values_.triangle[node] = closest.triangle;
+        const bool signs = field_.limits().signed_distance;
+        if (!signs || to_center <= kCornerRadius + kRounding) {
+            measure_nodes(center, to_center, field_.reach_voxels());
+            if (signs) sign_nodes();
+            return;
+        }
+        // The surface does not come between these nodes. Beyond the wall, only those next to it matter.
+        const bool inside = field_.tree().inside(center);
+        const WallLimits& limits = field_.limits();
+        const double reach = (inside ? -limits.lower : limits.upper) + field_.longest_edge() + kRounding;
+        if (to_center > reach + kCornerRadius) return;
+        measure_nodes(center, to_center, reach);
+        if (inside)
+            for (std::size_t i = 0; i < kCornerNodes; ++i)
+                if (distance_[i] != kFar) values_.phi[node(i)] = -distance_[i];
+    }
+
+    void measure_nodes(const Vec3& center, double to_center, double reach_voxels) {
+        for (std::size_t i = 0; i < kCornerNodes; ++i) {
+            const Vec3 p = position(i);
+            // A step from a neighbour adds no more than its length.
+            double bound = to_center + (p - center).norm() / lattice_.step_mm();
+            for (const auto& [axis, stride] : {std::pair{i & 3, 1U}, {(i >> 2) & 3, 4U}, {i >> 4, 16U}})
+                if (axis > 0) bound = std::min(bound, static_cast<double>(distance_[i - stride]) + 1.0);
+            const double reach = std::min(bound + kRounding, reach_voxels) * lattice_.step_mm();
+            const ClosestPoint closest = field_.tree().closest(p, reach);
+            distance_[i] = kFar;
+            if (!closest.found()) continue;
+            distance_[i] = static_cast<float>(closest.distance_mm / lattice_.step_mm());
+            values_.phi[node(i)] = distance_[i];
+            values_.triangle[node(i)] = closest.triangle;
+        }
+    }
+
+    /// Floods between neighbours that no surface can separate, as their distances add up to more than their own; one
+    /// test for each part, at its node farthest from the surface.
+    void sign_nodes() {
+        std::array<bool, kCornerNodes> seen{};
+        std::array<std::size_t, kCornerNodes> part{};
+        for (std::size_t seed = 0; seed < kCornerNodes; ++seed) {
+            if (seen[seed] || distance_[seed] == kFar) continue;
+            std::size_t size = 1, deepest = seed;
+            part[0] = seed;
+            seen[seed] = true;
+            for (std::size_t k = 0; k < size; ++k) {
+                const std::size_t i = part[k];
+                if (distance_[i] > distance_[deepest]) deepest = i;
+                const auto join = [&](std::size_t j) {
+                    if (seen[j] || distance_[j] == kFar || distance_[i] + distance_[j] <= 1.0001F) return;
+                    seen[j] = true;
+                    part[size++] = j;
+                };
+                for (const auto& [axis, stride] : {std::pair{i & 3, 1U}, {(i >> 2) & 3, 4U}, {i >> 4, 16U}}) {
+                    if (axis > 0) join(i - stride);
+                    if (axis < 3) join(i + stride);
                 }
+            }
+            if (!field_.tree().inside(position(deepest))) continue;
+            for (std::size_t k = 0; k < size; ++k) values_.phi[node(part[k])] = -distance_[part[k]];
+        }
     }
 
     const WallLattice& lattice_;
     const WallField& field_;
     NodeValues& values_;
+    NodeCoord low_{};      ///< of the corner
+    NodeIndex first_ = 0;  ///< its lowest node
+    std::array<float, kCornerNodes> distance_{};
 };
-
-/// Parts of the band that no surface separates: two neighbours whose distances add up to more than their own distance
-/// are on one side. Returns the part of each node and, per part, its node farthest from the surface.
-struct Parts {
-    std::vector<std::uint32_t> of_node;
-    std::vector<NodeIndex> deepest;
-};
-
-Parts flood_parts(const WallLattice& lattice, const std::vector<float>& distance, const RunControl& run) {
-    constexpr std::uint32_t none = ~std::uint32_t{0};
-    Parts parts;
-    parts.of_node.assign(lattice.node_count(), none);
-    std::vector<NodeIndex> stack;
-    for (NodeIndex seed = 0; seed < lattice.node_count(); ++seed) {
-        if (distance[seed] == kFar || parts.of_node[seed] != none) continue;
-        const auto part = static_cast<std::uint32_t>(parts.deepest.size());
-        NodeIndex deepest = seed;
-        parts.of_node[seed] = part;
-        stack.assign(1, seed);
-        run.throw_if_stopped();
-        while (!stack.empty()) {
-            const NodeIndex node = stack.back();
-            stack.pop_back();
-            if (distance[node] > distance[deepest]) deepest = node;
-            const NodeCoord c = lattice.coord(node);
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                for (const std::int32_t step : {-1, 1}) {
-                    NodeCoord d = c;
-                    d[axis] += step;
-                    const NodeIndex next = lattice.find(d);
-                    if (next == WallLattice::kNone || parts.of_node[next] != none || distance[next] == kFar) continue;
-                    if (distance[node] + distance[next] <= 1.0001F) continue;
-                    parts.of_node[next] = part;
-                    stack.push_back(next);
-                }
-        }
-        parts.deepest.push_back(deepest);
-    }
-    return parts;
-}
-
-void sign_distances(const WallLattice& lattice, const WallField& field, NodeValues& values, const RunControl& run) {
-    const Parts parts = flood_parts(lattice, values.phi, run);
-    std::vector<std::uint8_t> inside(parts.deepest.size());
-    parallel_chunks(inside.size(), 256, [&](std::size_t begin, std::size_t end) {
-        run.throw_if_stopped();
-        for (std::size_t p = begin; p < end; ++p)
-            inside[p] = field.tree().inside(lattice.position_mm(lattice.coord(parts.deepest[p]))) ? 1 : 0;
-    });
-    for (std::size_t node = 0; node < values.phi.size(); ++node)
-        if (values.phi[node] != kFar && inside[parts.of_node[node]] != 0) values.phi[node] = -values.phi[node];
-}
 
 /// Wherever an edge to a node inside the wall could start.
 void sample_pattern(const WallLattice& lattice, const WallField& field, NodeValues& values, const RunControl& run) {
@@ -211,7 +231,6 @@ NodeValues sample_wall(const WallLattice& lattice, const WallField& field, const
             BlockDistances(lattice, field, values).measure(block);
         }
     });
-    if (field.limits().signed_distance) sign_distances(lattice, field, values, run);
     sample_pattern(lattice, field, values, run);
     return values;
 }

@@ -56,8 +56,8 @@ struct NodeValues {
     std::vector<std::uint32_t> triangle;  ///< the closest one
 };
 
-/// Distances exactly, signs by flooding between nodes that no surface can separate and one inside test per flooded
-/// part, the pattern at the closest surface point.
+/// Distances exactly; signs by one inside test for each group of nodes that no surface can separate; the pattern at the
+/// closest surface point. Nodes that no edge joins to the wall may stay out of reach.
 NodeValues sample_wall(const WallLattice& lattice, const WallField& field, const RunControl& run);
 
 }  // namespace fretwork
