@@ -23,18 +23,6 @@ constexpr std::size_t kMostTries = 2;
 /// More samples than this in one ring would cost more than the triangles it saves.
 constexpr std::size_t kMostSamples = 1000;
 
-bool similar(const Rgb8& a, const Rgb8& b, int step) {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (std::abs(int{a[k]} - int{b[k]}) > step) return false;
-    return true;
-}
-
-Rgb8 mean_color(const Rgb8& a, const Rgb8& b, const Rgb8& c) {
-    Rgb8 mean;
-    for (std::size_t k = 0; k < 3; ++k) mean[k] = static_cast<std::uint8_t>((int{a[k]} + int{b[k]} + int{c[k]}) / 3);
-    return mean;
-}
-
 bool has(const Triangle& t, std::uint32_t v) {
     return t[0] == v || t[1] == v || t[2] == v;
 }
@@ -63,17 +51,48 @@ bool BlockSimplifier::gather_spokes(std::uint32_t u) {
 }
 
 bool BlockSimplifier::try_vertex(std::uint32_t u, double allowed) {
-    rank_candidates(u, allowed);
+    rank_candidates(allowed);
     for (std::size_t k = 0; k < candidates_.size() && k < kMostTries; ++k)
         if (try_candidate(u, candidates_[k], allowed)) return true;
     return false;
 }
 
-/// Cost of a way: how far its end lies off the planes around u, and a share for the shape of what comes out.
-void BlockSimplifier::rank_candidates(std::uint32_t u, double allowed) {
-    candidates_.clear();
+std::uint8_t BlockSimplifier::area(std::size_t spoke) const {
+    return state_.areas.of_triangle[spokes_[spoke].corner / 3];
+}
+
+/// The edges at u that are borders between areas: how many, and the first two.
+std::size_t BlockSimplifier::find_border() {
+    std::size_t count = 0;
     for (std::size_t i = 0; i < spokes_.size(); ++i) {
-        if (!similar(state_.colors[u], state_.colors[spokes_[i].vertex], color_step_)) continue;
+        if (area(i) == area(i > 0 ? i - 1 : spokes_.size() - 1)) continue;
+        if (count < 2) border_spokes_[count] = i;
+        ++count;
+    }
+    return count;
+}
+
+/// A vertex of a border goes along it only, to where the border runs nearly straight past it; one where three areas
+/// meet stays.
+bool BlockSimplifier::keeps_border(std::size_t toward, std::size_t borders) const {
+    if (borders == 0) return true;
+    if (borders != 2 || (toward != border_spokes_[0] && toward != border_spokes_[1])) return false;
+    const Vec3 on =
+        closest_on_segment(Vec3::Zero(), spokes_[border_spokes_[0]].offset, spokes_[border_spokes_[1]].offset);
+    return on.squaredNorm() <= border_mm_ * border_mm_;
+}
+
+bool BlockSimplifier::stands_for(std::uint32_t triangle, std::uint32_t sample) const {
+    const std::uint8_t own = state_.areas.of_vertex[sample];
+    return !minds_areas() || own == MeshAreas::kBorder || own == state_.areas.of_triangle[triangle];
+}
+
+/// Cost of a way: how far its end lies off the planes around u, and a share for the shape of what comes out.
+void BlockSimplifier::rank_candidates(double allowed) {
+    candidates_.clear();
+    const std::size_t borders = minds_areas() ? find_border() : 0;
+    for (std::size_t i = 0; i < spokes_.size(); ++i) {
+        if (!keeps_border(i, borders)) continue;
         double off = 0.0;
         for (const Spoke& s : spokes_)
             if (s.shape.quality > 1e-3F)
@@ -118,20 +137,18 @@ bool BlockSimplifier::try_candidate(std::uint32_t u, const Candidate& candidate,
 
 void BlockSimplifier::make_ring(std::size_t toward) {
     ring_.clear();
-    const std::uint32_t v = spokes_[toward].vertex;
     const std::size_t n = spokes_.size();
     for (std::size_t k = 1; k + 1 < n; ++k) {
         const std::size_t i = (toward + k) % n, j = (i + 1) % n;
         const Vec3 a = spokes_[i].offset - spokes_[toward].offset, b = spokes_[j].offset - spokes_[toward].offset;
         const std::uint32_t p = spokes_[i].vertex, q = spokes_[j].vertex;
         const Vec3 normal = a.cross(b).normalized();
-        ring_.push_back({spokes_[i].corner / 3, p, q, normal, normal.cross(a), normal.cross(b - a), normal.cross(-b),
-                         mean_color(state_.colors[v], state_.colors[p], state_.colors[q])});
+        ring_.push_back({spokes_[i].corner / 3, p, q, normal, normal.cross(a), normal.cross(b - a), normal.cross(-b)});
     }
 }
 
 /// Finds for u and every sample of its ring a triangle of the new ring that stands for it: the one it lies over, or
-/// else the nearest. False if one is farther than allowed or of another colour.
+/// else the nearest. False if one is farther than allowed or of another area.
 bool BlockSimplifier::find_samples(std::uint32_t u, std::uint32_t v, double allowed) {
     filed_.clear();
     const Vec3& at = mesh_.position(v);
@@ -149,7 +166,7 @@ bool BlockSimplifier::file_sample(std::uint32_t sample, const Vec3& v, double al
         if (std::abs(t.normal.dot(d)) > allowed || t.edge_v.dot(d) < 0.0 || t.edge_q.dot(d) < 0.0 ||
             t.edge_p.dot(at - mesh_.position(t.p)) < 0.0)
             continue;
-        if (!similar(t.color, state_.colors[sample], color_step_)) return false;
+        if (!stands_for(t.triangle, sample)) return false;
         filed_.push_back({sample, t.triangle});
         return true;
     }
@@ -162,7 +179,7 @@ bool BlockSimplifier::file_sample(std::uint32_t sample, const Vec3& v, double al
         nearest2 = d2;
         nearest = &t;
     }
-    if (nearest2 > allowed * allowed || !similar(nearest->color, state_.colors[sample], color_step_)) return false;
+    if (nearest2 > allowed * allowed || !stands_for(nearest->triangle, sample)) return false;
     filed_.push_back({sample, nearest->triangle});
     return true;
 }

@@ -1,6 +1,7 @@
 // Collapses the edges of one block of vertices.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,11 +16,12 @@ class BlockSimplifier {
     using Corner = CollapseMesh::Corner;
 
     /// \param block       per vertex
-    /// \param color_step  see SimplifySettings
+    /// \param border_mm   how far the border between two areas may move when a vertex of it goes; infinite: areas do
+    ///                    not matter
     /// \param log         gets, for each collapse: its edge's corner, the number of corners that stayed, those corners
-    BlockSimplifier(SimplifyState& state, const std::vector<std::uint32_t>& block, int color_step,
+    BlockSimplifier(SimplifyState& state, const std::vector<std::uint32_t>& block, double border_mm,
                     std::vector<Corner>& log)
-        : state_(state), mesh_(state.mesh), block_(block), color_step_(color_step), log_(log) {}
+        : state_(state), mesh_(state.mesh), block_(block), border_mm_(border_mm), log_(log) {}
 
     /// Tries each vertex once. \param full  `allowed` is the whole tolerance: who cannot go now is settled
     void sweep(std::span<const std::uint32_t> vertices, double allowed, bool full);
@@ -42,7 +44,6 @@ class BlockSimplifier {
         Vec3 normal;
         Vec3 edge_v, edge_p;  ///< in the plane, inwards from the sides v p and p q
         Vec3 edge_q;          ///< and q v
-        Rgb8 color;
     };
     struct Filed {
         std::uint32_t vertex, triangle;
@@ -50,7 +51,12 @@ class BlockSimplifier {
 
     bool try_vertex(std::uint32_t u, double allowed);
     [[nodiscard]] bool gather_spokes(std::uint32_t u);
-    void rank_candidates(std::uint32_t u, double allowed);
+    [[nodiscard]] bool minds_areas() const { return border_mm_ < std::numeric_limits<double>::infinity(); }
+    [[nodiscard]] std::uint8_t area(std::size_t spoke) const;
+    [[nodiscard]] std::size_t find_border();
+    [[nodiscard]] bool keeps_border(std::size_t toward, std::size_t borders) const;
+    [[nodiscard]] bool stands_for(std::uint32_t triangle, std::uint32_t sample) const;
+    void rank_candidates(double allowed);
     [[nodiscard]] bool good_shape(std::size_t toward, double& worst) const;
     [[nodiscard]] bool try_candidate(std::uint32_t u, const Candidate& candidate, double allowed);
     void make_ring(std::size_t toward);
@@ -66,7 +72,8 @@ class BlockSimplifier {
     SimplifyState& state_;
     CollapseMesh& mesh_;
     const std::vector<std::uint32_t>& block_;
-    int color_step_;
+    double border_mm_;
+    std::array<std::size_t, 2> border_spokes_{};
     std::vector<Corner>& log_;
     std::vector<Corner> around_;
     std::vector<Spoke> spokes_;

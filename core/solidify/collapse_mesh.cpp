@@ -115,18 +115,4 @@ std::array<std::uint32_t, 4> CollapseMesh::touched_by(Corner edge) const {
     return {edge / 3, other / 3, across_[edge] / 3, across_[at_u] / 3};
 }
 
-TriangleMesh CollapseMesh::extract() const {
-    TriangleMesh mesh;
-    std::vector<std::uint32_t> number(positions_.size(), kNone);
-    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
-        if (!alive(v)) continue;
-        number[v] = static_cast<std::uint32_t>(mesh.positions_mm.size());
-        mesh.positions_mm.push_back(positions_[v]);
-    }
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-        if (triangle_alive(t))
-            mesh.triangles.push_back({number[triangles_[t][0]], number[triangles_[t][1]], number[triangles_[t][2]]});
-    return mesh;
-}
-
 }  // namespace fretwork

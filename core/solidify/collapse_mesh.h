@@ -57,8 +57,6 @@ class CollapseMesh {
     /// The other triangle that died with the one of `edge`: its corner that faced the edge.
     [[nodiscard]] Corner facing(Corner edge) const { return across_[previous(edge)]; }
 
-    [[nodiscard]] TriangleMesh extract() const;
-
   private:
     [[nodiscard]] bool degree_at_least_four(Corner c) const;
     void link(Corner a, Corner b);

@@ -85,6 +85,13 @@ class EdgeSearch {
         return std::min(std::abs(inside_.phi) + s * length, std::abs(outside_.phi) + (1.0 - s) * length) + 1e-4;
     }
 
+    /// Where f jumps, as the pattern does between two sheets that meet, the surface is that of the sheet inside.
+    double settle_inside() {
+        const WallSample s = field_.sample(at(low_), sign_at(low_), reach(low_));
+        if (s.found) last_ = s;
+        return low_;
+    }
+
     double search() {
         double s = low_;
         int side = 0;
@@ -113,6 +120,7 @@ class EdgeSearch {
                 if (side == 1) f_low_ *= 0.5;
                 side = 1;
             }
+            if (step + 1 == kMaxSteps) return settle_inside();
         }
         return s;
     }

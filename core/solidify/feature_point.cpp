@@ -127,7 +127,9 @@ std::optional<WallVertex> feature_on_triangle(const WallField& field, const std:
         WallVertex v;
         v.feature = true;
         v.face = a.face == WallFace::kPattern ? b.face : a.face;
-        v.triangle = s.triangle;
+        // Halfway between two sheets either may be the closest; the edge belongs to the one of its faces.
+        const bool other_sheet = field.triangle_normal(s.triangle).dot(field.triangle_normal(a.triangle)) < 0.0;
+        v.triangle = other_sheet ? a.triangle : s.triangle;
         v.position_mm = plane.lift(plane.clamped(q, start, 2.0 * margin));
         v.to_target_mm = (plane.lift(q) - v.position_mm).cast<float>();
         return v;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,10 @@ namespace {
 
 /// Radius of the kernel that blends the voxels' own views of the pattern, in voxels.
 constexpr double kKernel = 1.6;
+/// The same for colours, which bear less blur.
+constexpr double kColorKernel = 1.5;
+/// Between voxels whose colours differ by no more in any channel there is nothing to blend.
+constexpr int kPlainStep = 4;
 
 /// How far a label may move the border from where the states put it, in voxels.
 constexpr double kLabelSlack = 0.75;
@@ -29,6 +34,13 @@ constexpr double kAgreement = 0.4;
 /// A voxel this far from the border, by the kernel and the slack, speaks for all points nearest to it, in voxels.
 constexpr float kFarFromBorder = 3.0F;
 static_assert(kFarFromBorder > kKernel + kLabelSlack + 0.5 && kFarFromBorder < kBorderReach);
+
+Rgb8 to_bytes(const Vec3& color) {
+    Rgb8 bytes{};
+    for (Eigen::Index k = 0; k < 3; ++k)
+        bytes[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(std::lround(std::clamp(color[k], 0.0, 255.0)));
+    return bytes;
+}
 
 std::vector<Vec3f> unit_normals(const TriangleMesh& mesh) {
     std::vector<Vec3f> normals(mesh.triangles.size(), Vec3f::Zero());
@@ -55,6 +67,7 @@ class VoxelPattern {
           normals_(unit_normals(mesh)) {
         wrap_frames(exemplar);
         build_border(solid, run);
+        find_plain();
     }
 
     [[nodiscard]] double signed_distance_voxels(const Vec3& p, std::uint32_t triangle) const {
@@ -63,11 +76,29 @@ class VoxelPattern {
         return f;
     }
 
+    /// Blended as the distance is, over fewer voxels: a colour that jumped from voxel to voxel would have stairs for
+    /// borders.
     [[nodiscard]] Rgb8 color(const Vec3& p, std::uint32_t triangle) const {
-        const VoxelIndex v = index_.nearest(p, normals_[triangle]);
-        if (v == ShellIndex::kNone) return {};
-        const auto [u, w] = texel(v, p);
-        return sampler_.solid_color(u, w);
+        const Vec3f& normal = normals_[triangle];
+        const VoxelIndex base = index_.nearest(p, normal);
+        if (base == ShellIndex::kNone) return {};
+        if (plain_[base] != 0) return own_color_[base];
+        Vec3 sum = Vec3::Zero();
+        double weights = 0.0;
+        const auto add = [&](VoxelIndex v) {
+            const double w = weight(v, p, normal, kColorKernel);
+            if (w <= 0.0) return;
+            const auto [x, y] = texel(v, p);
+            sum += w * sampler_.solid_color(x, y);
+            weights += w;
+        };
+        add(base);
+        for (const VoxelIndex v : shell_.adjacency.of(base)) add(v);
+        if (!(weights > 0.0)) {
+            const auto [x, y] = texel(base, p);
+            return to_bytes(sampler_.solid_color(x, y));
+        }
+        return to_bytes(sum / weights);
     }
 
   private:
@@ -81,6 +112,23 @@ class VoxelPattern {
             const double scale = std::sqrt(static_cast<double>(frames_[v].du.norm() * frames_[v].dv.norm()));
             pixels_per_voxel_[v] = static_cast<float>(scale > 1e-6 ? scale : 1.0);
         }
+    }
+
+    /// Voxels with neighbours of their own colour all around.
+    void find_plain() {
+        own_color_.resize(shell_.size());
+        parallel_for(shell_.size(), 4096, [&](std::size_t i) {
+            const auto [u, w] = texel(static_cast<VoxelIndex>(i), shell_.points_mm[i]);
+            own_color_[i] = to_bytes(sampler_.solid_color(u, w));
+        });
+        plain_.resize(shell_.size());
+        parallel_for(shell_.size(), 4096, [&](std::size_t i) {
+            bool plain = true;
+            for (const VoxelIndex v : shell_.adjacency.of(static_cast<VoxelIndex>(i)))
+                for (std::size_t k = 0; k < 3; ++k)
+                    plain = plain && std::abs(int{own_color_[i][k]} - int{own_color_[v][k]}) <= kPlainStep;
+            plain_[i] = plain ? 1 : 0;
+        });
     }
 
     [[nodiscard]] std::pair<double, double> texel(VoxelIndex v, const Vec3& p) const {
@@ -154,8 +202,18 @@ class VoxelPattern {
         return std::clamp(label_distance(v, p), plane - kLabelSlack, plane + kLabelSlack);
     }
 
-    /// Blend over the voxels of the sheet within the kernel. Its weights fall to zero with zero slope at the kernel's
-    /// rim, so that the field has no step where a voxel comes into reach.
+    /// Share of a voxel in what is blended at p. It falls to zero with zero slope at the kernel's rim, so that there is
+    /// no step where a voxel comes into reach.
+    [[nodiscard]] double weight(VoxelIndex v, const Vec3& p, const Vec3f& normal, double kernel) const {
+        const double radius = kernel * shell_.grid.voxel_mm;
+        const double r2 = (p - shell_.points_mm[v]).squaredNorm() / (radius * radius);
+        if (r2 >= 1.0) return 0.0;
+        // Round a rim of a thin plate the other side is two steps away and does not belong to this one.
+        const double facing = static_cast<double>(normal.dot(shell_.normals[v])) + 0.3;
+        return facing <= 0.0 ? 0.0 : (1.0 - r2) * (1.0 - r2) * std::min(facing, 0.5);
+    }
+
+    /// Blend over the voxels of the sheet within the kernel.
     [[nodiscard]] double blended(const Vec3& p, std::uint32_t triangle) const {
         const Vec3f& normal = normals_[triangle];
         const VoxelIndex base = index_.nearest(p, normal);
@@ -163,13 +221,8 @@ class VoxelPattern {
         if (std::abs(value_[base]) > kFarFromBorder) return static_cast<double>(value_[base]);
         double sum = 0.0, weights = 0.0;
         const auto add = [&](VoxelIndex v) {
-            const double r2 = (p - shell_.points_mm[v]).squaredNorm() /
-                              (shell_.grid.voxel_mm * shell_.grid.voxel_mm * kKernel * kKernel);
-            if (r2 >= 1.0) return;
-            // Round a rim of a thin plate the other side is two steps away and does not belong to this one.
-            const double facing = static_cast<double>(normal.dot(shell_.normals[v])) + 0.3;
-            if (facing <= 0.0) return;
-            const double w = (1.0 - r2) * (1.0 - r2) * std::min(facing, 0.5);
+            const double w = weight(v, p, normal, kKernel);
+            if (w <= 0.0) return;
             sum += w * seen_from(v, p);
             weights += w;
         };
@@ -189,6 +242,8 @@ class VoxelPattern {
     VoxelMask trusted_;
     std::vector<float> value_;
     std::vector<Vec3f> gradient_;
+    std::vector<Rgb8> own_color_;
+    VoxelMask plain_;
     std::vector<Vec3f> normals_;  ///< per triangle of the mesh
 };
 

@@ -62,28 +62,48 @@ Blocks make_blocks(const CollapseMesh& mesh, double side_mm, int pass) {
 
 class Simplifier {
   public:
-    Simplifier(const TriangleMesh& input, const std::vector<Rgb8>& colors, const SimplifySettings& settings,
+    Simplifier(const TriangleMesh& input, const MeshAreas& areas, const SimplifySettings& settings,
                const RunControl& run)
-        : settings_(settings), run_(run), state_(input, colors), log_(state_) {
+        : settings_(settings), run_(run), state_(input, areas), log_(state_) {
         state_.shape.resize(input.triangles.size());
         parallel_for(input.triangles.size(), 1 << 14,
                      [&](std::size_t t) { state_.measure(static_cast<std::uint32_t>(t)); });
     }
 
-    TriangleMesh run() {
+    SimplifiedMesh run() {
         double tolerance = settings_.tolerance_mm;
         for (int doubling = 0; doubling < kDoublings; ++doubling, tolerance *= 2.0) {
             std::fill(state_.settled.begin(), state_.settled.end(), std::uint8_t{0});
             for (int pass = 0; pass < kPasses; ++pass)
-                run_pass(pass, tolerance, doubling == 0 ? settings_.color_step : 255);
+                run_pass(pass, tolerance,
+                         doubling == 0 ? settings_.border_mm : std::numeric_limits<double>::infinity());
             repair();
             if (settings_.target_triangles == 0 || alive_.size() <= settings_.target_triangles) break;
         }
-        return state_.mesh.extract();
+        return extract();
     }
 
   private:
-    void run_pass(int pass, double tolerance, int color_step) {
+    [[nodiscard]] SimplifiedMesh extract() const {
+        const CollapseMesh& mesh = state_.mesh;
+        SimplifiedMesh result;
+        std::vector<std::uint32_t> number(mesh.vertex_count());
+        for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+            if (!mesh.alive(v)) continue;
+            number[v] = static_cast<std::uint32_t>(result.vertex.size());
+            result.vertex.push_back(v);
+            result.mesh.positions_mm.push_back(mesh.position(v));
+        }
+        for (const std::uint32_t t : alive_) {
+            const Triangle& k = mesh.triangle(t);
+            result.mesh.triangles.push_back({number[k[0]], number[k[1]], number[k[2]]});
+        }
+        result.triangle = alive_;
+        result.sound = sound_;
+        return result;
+    }
+
+    void run_pass(int pass, double tolerance, double border_mm) {
         const Blocks blocks = make_blocks(state_.mesh, settings_.block_mm, pass);
         std::vector<std::vector<CollapseMesh::Corner>> logs(blocks.first.size() - 1);
         parallel_chunks(logs.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -91,7 +111,7 @@ class Simplifier {
                 const std::span<const std::uint32_t> vertices(blocks.order.data() + blocks.first[b],
                                                               blocks.order.data() + blocks.first[b + 1]);
                 if (vertices.empty()) continue;
-                BlockSimplifier worker(state_, blocks.of_vertex, color_step, logs[b]);
+                BlockSimplifier worker(state_, blocks.of_vertex, border_mm, logs[b]);
                 for (const double share : kSweeps) {
                     run_.throw_if_stopped();
                     worker.sweep(vertices, share * tolerance, share == 1.0);
@@ -115,9 +135,15 @@ class Simplifier {
         for (int round = 0; !changed.empty(); ++round) {
             run_.throw_if_stopped();
             const std::vector<std::uint32_t> meeting = meeting_triangles(changed);
-            if (meeting.empty()) return;
+            sound_ = meeting.empty();
+            if (sound_) return;
             changed = log_.take_back(meeting, round < kRepairs ? 1 << round : std::numeric_limits<int>::max());
+            if (changed.empty()) return;
             list_alive();
+            for (const std::uint32_t t : meeting)
+                if (state_.mesh.triangle_alive(t)) changed.push_back(t);
+            std::sort(changed.begin(), changed.end());
+            changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
         }
     }
 
@@ -148,13 +174,14 @@ class Simplifier {
     SimplifyState state_;
     CollapseLog log_;
     std::vector<std::uint32_t> alive_;  ///< triangles, ascending
+    bool sound_ = true;
 };
 
 }  // namespace
 
-TriangleMesh simplify(const TriangleMesh& mesh, const std::vector<Rgb8>& colors, const SimplifySettings& settings,
-                      const RunControl& run) {
-    return Simplifier(mesh, colors, settings, run).run();
+SimplifiedMesh simplify(const TriangleMesh& mesh, const MeshAreas& areas, const SimplifySettings& settings,
+                        const RunControl& run) {
+    return Simplifier(mesh, areas, settings, run).run();
 }
 
 }  // namespace fretwork

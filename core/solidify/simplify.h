@@ -2,21 +2,27 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/base/run_control.h"
-#include "core/exemplar/image.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/solidify/mesh_areas.h"
 
 namespace fretwork {
 
 struct SimplifySettings {
     double tolerance_mm = 0.05;
     std::size_t target_triangles = 0;  ///< 0: as the tolerance allows; else the tolerance is doubled until it is met
-    /// A sample's colour differs from the mean of its triangle's corners by no more in any channel; 255: colours do
-    /// not matter.
-    int color_step = 24;
-    double block_mm = 10.0;  ///< side of the cubes that are simplified in parallel
+    double border_mm = 0.1;            ///< how far the border between two areas may move when a vertex of it goes
+    double block_mm = 10.0;            ///< side of the cubes that are simplified in parallel
+};
+
+struct SimplifiedMesh {
+    TriangleMesh mesh;
+    std::vector<std::uint32_t> vertex;    ///< of the input, per vertex
+    std::vector<std::uint32_t> triangle;  ///< of the input that each triangle grew from
+    bool sound = true;                    ///< no two triangles meet; false only if some of the input met
 };
 
 /// Collapses edges onto one of their ends, so that every vertex of the result is a vertex of the input. Each vertex
@@ -27,8 +33,11 @@ struct SimplifySettings {
 /// The result does not depend on the number of threads: blocks are fixed cubes, and a vertex goes only if all its
 /// neighbours lie in its own block; a second and a third pass with shifted cubes treat the seams.
 ///
-/// \param colors  one per vertex
-TriangleMesh simplify(const TriangleMesh& mesh, const std::vector<Rgb8>& colors, const SimplifySettings& settings,
-                      const RunControl& run = {});
+/// Triangles keep their areas, and borders between areas their course; only when the tolerance has to be doubled for a
+/// target are areas disregarded.
+///
+/// \param areas  of the mesh's triangles and vertices; all the same where there is nothing to keep
+SimplifiedMesh simplify(const TriangleMesh& mesh, const MeshAreas& areas, const SimplifySettings& settings,
+                        const RunControl& run = {});
 
 }  // namespace fretwork

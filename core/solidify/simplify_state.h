@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <vector>
 
 #include <Eigen/Geometry>
 
-#include "core/exemplar/image.h"
 #include "core/mesh/triangle_math.h"
 #include "core/solidify/collapse_mesh.h"
+#include "core/solidify/mesh_areas.h"
 
 namespace fretwork {
 
@@ -33,16 +32,16 @@ inline TriangleShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c) {
 struct SimplifyState {
     static constexpr std::uint32_t kNone = CollapseMesh::kNone;
 
-    SimplifyState(const TriangleMesh& input, const std::vector<Rgb8>& vertex_colors)
+    SimplifyState(const TriangleMesh& input, const MeshAreas& mesh_areas)
         : mesh(input),
-          colors(vertex_colors),
+          areas(mesh_areas),
           first_sample(input.triangles.size(), kNone),
           next_sample(input.positions_mm.size(), kNone),
           locked(input.positions_mm.size(), 0),
           settled(input.positions_mm.size(), 0) {}
 
     CollapseMesh mesh;
-    const std::vector<Rgb8>& colors;   ///< per vertex
+    const MeshAreas& areas;
     std::vector<TriangleShape> shape;  ///< per triangle
     /// The vertices that went, as lists, filed under the triangle that now stands for them.
     std::vector<std::uint32_t> first_sample;  ///< per triangle

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/mesh/closest_point.h"
+#include "core/solidify/color_areas.h"
 #include "core/solidify/islands.h"
 #include "core/solidify/lattice_shift.h"
 #include "core/solidify/marching_tets.h"
@@ -22,6 +24,9 @@ namespace fretwork {
 namespace {
 
 constexpr const char* kStage = "solidify";
+
+/// How far simplifying may move a border between colours at a time, in voxels.
+constexpr double kBorderSlack = 0.15;
 
 std::string plain(double value) {
     std::string text = std::to_string(value);
@@ -88,37 +93,65 @@ double edge_clamp(const WallLattice& lattice, const SurfaceVoxels& shell) {
     return std::clamp(16.0 * spacing / lattice.step_mm(), 1e-3, 0.2);
 }
 
-/// Every triangle shows the pattern at its closest surface point, on outer, inner and hole faces alike.
-void paint(const SurfaceVoxels& shell, const WallField& field, const PatternField& pattern, CarvedMesh& carved,
-           const RunControl& run) {
+/// Where the vertices of the wall's mesh have their pattern from: the surface point each was found for. Two sheets that
+/// nearly touch keep their patterns apart that way.
+struct Anchors {
+    const WallMesh& wall;
+    const WallField& field;
+    const PatternField& pattern;
+
+    [[nodiscard]] std::uint32_t triangle(std::uint32_t vertex) const { return wall.vertices[vertex].triangle; }
+    [[nodiscard]] Vec3 point(std::uint32_t vertex) const {
+        return field.closest_on(triangle(vertex), wall.vertices[vertex].position_mm);
+    }
+    [[nodiscard]] Rgb8 color(std::uint32_t vertex) const { return pattern.color(point(vertex), triangle(vertex)); }
+    [[nodiscard]] Rgb8 color_between(std::uint32_t a, std::uint32_t b, double share) const {
+        const Vec3 from = point(a), to = point(b);
+        return pattern.color(from + share * (to - from), triangle(share < 0.5 ? a : b));
+    }
+};
+
+/// The surface voxel whose pattern each triangle shows: by its closest surface point, on the sheet that its first
+/// corner belongs to.
+std::vector<std::uint32_t> voxels_shown(const SurfaceVoxels& shell, const Anchors& anchors,
+                                        const std::vector<std::uint32_t>& wall_vertex, const TriangleMesh& mesh,
+                                        const RunControl& run) {
     const ShellIndex index(shell);
-    const std::size_t n = carved.mesh.triangles.size();
-    carved.triangle_colors.resize(n);
-    carved.triangle_voxels.resize(n);
-    parallel_chunks(n, 1024, [&](std::size_t begin, std::size_t end) {
+    const WallField& field = anchors.field;
+    std::vector<std::uint32_t> voxels(mesh.triangles.size());
+    parallel_chunks(voxels.size(), 1024, [&](std::size_t begin, std::size_t end) {
         run.throw_if_stopped();
         for (std::size_t i = begin; i < end; ++i) {
-            const auto& [a, b, c] = carved.mesh.triangles[i];
-            const std::vector<Vec3>& at = carved.mesh.positions_mm;
-            const ClosestPoint closest = field.tree().closest((at[a] + at[b] + at[c]) / 3.0);
-            carved.triangle_colors[i] = pattern.color(closest.point_mm, closest.triangle);
+            const auto& [a, b, c] = mesh.triangles[i];
+            const Vec3 middle = (mesh.positions_mm[a] + mesh.positions_mm[b] + mesh.positions_mm[c]) / 3.0;
+            ClosestPoint closest = field.tree().closest(middle);
+            const std::uint32_t anchor = anchors.triangle(wall_vertex[a]);
+            if (field.triangle_normal(closest.triangle).dot(field.triangle_normal(anchor)) < 0.0)
+                closest = {field.closest_on(anchor, middle), 0.0, anchor};
             const VoxelIndex v = index.nearest(closest.point_mm, field.triangle_normal(closest.triangle).cast<float>());
-            carved.triangle_voxels[i] = v == ShellIndex::kNone ? 0 : v;
+            voxels[i] = v == ShellIndex::kNone ? 0 : v;
         }
     });
+    return voxels;
 }
 
-std::vector<Rgb8> vertex_colors(const WallMesh& wall, const WallField& field, const PatternField& pattern,
-                                const RunControl& run) {
-    std::vector<Rgb8> colors(wall.vertices.size());
+/// The wall's mesh cut along the borders between the pattern's colours; uncut and of one colour if colours are not
+/// asked for.
+ColorAreas color_areas(const TriangleMesh& mesh, const Anchors& anchors, bool keep_colors, const RunControl& run) {
+    if (!keep_colors)
+        return {mesh,
+                {Rgb8{}},
+                {std::vector<std::uint8_t>(mesh.triangles.size(), 0),
+                 std::vector<std::uint8_t>(mesh.positions_mm.size(), 0)},
+                {}};
+    std::vector<Rgb8> colors(mesh.positions_mm.size());
     parallel_chunks(colors.size(), 4096, [&](std::size_t begin, std::size_t end) {
         run.throw_if_stopped();
-        for (std::size_t v = begin; v < end; ++v) {
-            const std::uint32_t triangle = wall.vertices[v].triangle;
-            colors[v] = pattern.color(field.closest_on(triangle, wall.vertices[v].position_mm), triangle);
-        }
+        for (std::size_t v = begin; v < end; ++v) colors[v] = anchors.color(static_cast<std::uint32_t>(v));
     });
-    return colors;
+    return cut_into_areas(
+        mesh, colors,
+        [&](std::uint32_t a, std::uint32_t b, double share) { return anchors.color_between(a, b, share); }, run);
 }
 
 SimplifySettings simplify_settings(const SolidifySettings& settings, double voxel_mm) {
@@ -127,8 +160,42 @@ SimplifySettings simplify_settings(const SolidifySettings& settings, double voxe
     simplify.tolerance_mm = std::max(settings.simplify_tolerance_voxels, 0.01) * voxel_mm;
     simplify.target_triangles = settings.target_triangles;
     simplify.block_mm = 24.0 * voxel_mm;
-    if (!settings.keep_colors) simplify.color_step = 255;
+    simplify.border_mm = kBorderSlack * voxel_mm;
     return simplify;
+}
+
+/// From the lattice's mesh to what is delivered: colours, fewer triangles.
+void finish(const SurfaceVoxels& shell, const Anchors& anchors, const SolidifySettings& settings, const RunControl& run,
+            CarvedMesh& carved) {
+    const bool simplifies = settings.simplify_tolerance_voxels > 0.0 || settings.target_triangles > 0;
+    const std::size_t own = carved.mesh.positions_mm.size();
+    const SimplifySettings simplify_as = simplify_settings(settings, shell.grid.voxel_mm);
+    ColorAreas colored = color_areas(carved.mesh, anchors, settings.keep_colors && simplifies, run);
+    run.checkpoint(kStage, 0.75);
+    SimplifiedMesh simple;
+    if (simplifies) simple = simplify(colored.mesh, colored.areas, simplify_as, run);
+    if (!simple.sound) {
+        // Rounding the vertices on the borders made triangles meet.
+        colored = color_areas(carved.mesh, anchors, false, run);
+        simple = simplify(colored.mesh, colored.areas, simplify_as, run);
+    }
+    run.checkpoint(kStage, 0.9);
+    std::vector<std::uint32_t> wall_vertex = std::move(simple.vertex);
+    if (simplifies) {
+        carved.mesh = std::move(simple.mesh);
+    } else {
+        wall_vertex.resize(own);
+        std::iota(wall_vertex.begin(), wall_vertex.end(), 0U);
+    }
+    for (std::uint32_t& v : wall_vertex)
+        if (v >= own) v = colored.parent[v - own];
+    carved.triangle_colors.resize(carved.mesh.triangles.size());
+    parallel_for(carved.mesh.triangles.size(), 1024, [&](std::size_t t) {
+        carved.triangle_colors[t] = colored.palette.size() > 1
+                                        ? colored.palette[colored.areas.of_triangle[simple.triangle[t]]]
+                                        : anchors.color(wall_vertex[carved.mesh.triangles[t][0]]);
+    });
+    carved.triangle_voxels = voxels_shown(shell, anchors, wall_vertex, carved.mesh, run);
 }
 
 }  // namespace
@@ -158,11 +225,7 @@ CarvedMesh solidify(const TriangleMesh& mesh, const SurfaceVoxels& shell, const 
     if (carved.mesh.triangles.empty())
         throw ConstraintsNotMet("solidify: no material is left; the pattern is empty everywhere");
     run.checkpoint(kStage, 0.7);
-    if (settings.simplify_tolerance_voxels > 0.0 || settings.target_triangles > 0)
-        carved.mesh = simplify(carved.mesh, vertex_colors(wall, field, pattern, run),
-                               simplify_settings(settings, shell.grid.voxel_mm), run);
-    run.checkpoint(kStage, 0.9);
-    paint(shell, field, pattern, carved, run);
+    finish(shell, {wall, field, pattern}, settings, run, carved);
     run.checkpoint(kStage, 1.0);
     return carved;
 }

@@ -41,6 +41,7 @@ TexelSampler::TexelSampler(const Exemplar& exemplar) : exemplar_(&exemplar) {
 
 std::size_t TexelSampler::index(long x, long y) const {
     const long w = exemplar_->width, h = exemplar_->height;
+    if (x >= 0 && x < w && y >= 0 && y < h) return static_cast<std::size_t>(y * w + x);
     if (exemplar_->tileable) {
         x = (x % w + w) % w;
         y = (y % h + h) % h;
@@ -68,18 +69,15 @@ double TexelSampler::feature_distance(double u, double v) const {
     return sum;
 }
 
-Rgb8 TexelSampler::solid_color(double u, double v) const {
+Vec3 TexelSampler::solid_color(double u, double v) const {
     const Corners c = corners(u, v);
-    double sum[3] = {0.0, 0.0, 0.0};
+    Vec3 sum = Vec3::Zero();
     for (std::size_t k = 0; k < 4; ++k) {
         const std::uint32_t nearest = nearest_solid_[c.pixel[k]];
         const Rgb8& color = exemplar_->color[nearest < exemplar_->color.size() ? nearest : c.pixel[k]];
-        for (std::size_t channel = 0; channel < 3; ++channel) sum[channel] += c.weight[k] * color[channel];
+        sum += c.weight[k] * Vec3(color[0], color[1], color[2]);
     }
-    Rgb8 result{};
-    for (std::size_t channel = 0; channel < 3; ++channel)
-        result[channel] = static_cast<std::uint8_t>(std::lround(std::clamp(sum[channel], 0.0, 255.0)));
-    return result;
+    return sum;
 }
 
 }  // namespace fretwork

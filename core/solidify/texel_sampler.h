@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/vec.h"
 #include "core/exemplar/exemplar.h"
 
 namespace fretwork {
@@ -17,10 +18,10 @@ class TexelSampler {
     /// Bilinear feature distance, in pixels.
     [[nodiscard]] double feature_distance(double u, double v) const;
 
-    /// Bilinear colour; where the exemplar is empty, that of the nearest solid pixel, because what shows there is
-    /// material that was added after the fact. So it is in the last pixel of solid, whose colour is mixed with that
-    /// of the opening: hole walls stand there.
-    [[nodiscard]] Rgb8 solid_color(double u, double v) const;
+    /// Bilinear colour, in bytes before rounding; where the exemplar is empty, that of the nearest solid pixel, because
+    /// what shows there is material that was added after the fact. So it is in the last pixel of solid, whose colour is
+    /// mixed with that of the opening: hole walls stand there.
+    [[nodiscard]] Vec3 solid_color(double u, double v) const;
 
   private:
     struct Corners {
