@@ -73,12 +73,40 @@ cholmod_sparse sparse_view(const std::vector<std::int64_t>& first, const std::ve
     throw SolverFailure("equilibrium solver: " + what + ": status " + std::to_string(common.status));
 }
 
+template <class Function>
+Function* find_function(const char* name) {
+    return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
+}
+
 /// Threaded sums differ with the number of threads. OpenBLAS is told at run time where it is the
 /// library in use; others (the reference BLAS) have one thread anyway.
 void use_one_blas_thread() {
-    if (void* symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"); symbol != nullptr)
-        reinterpret_cast<void (*)(int)>(symbol)(1);
+    if (auto* set_threads = find_function<void(int)>("openblas_set_num_threads"); set_threads != nullptr)
+        set_threads(1);
 }
+
+/// While it lives, OpenMP regions that the calling thread meets run on that thread alone. The sparse library asks
+/// for four threads at every supernode, whatever the machine has: starting and awaiting them costs as much as the
+/// factorisation itself.
+class SerialOpenMp {
+  public:
+    SerialOpenMp()
+        : get_(find_function<int()>("omp_get_max_active_levels")),
+          set_(find_function<void(int)>("omp_set_max_active_levels")),
+          levels_(get_ != nullptr ? get_() : 0) {
+        if (set_ != nullptr) set_(0);
+    }
+    ~SerialOpenMp() {
+        if (get_ != nullptr && set_ != nullptr) set_(levels_);
+    }
+    SerialOpenMp(const SerialOpenMp&) = delete;
+    SerialOpenMp& operator=(const SerialOpenMp&) = delete;
+
+  private:
+    int (*get_)();
+    void (*set_)(int);
+    int levels_;
+};
 
 }  // namespace
 
@@ -108,6 +136,7 @@ struct EquilibriumSolver::Impl {
 EquilibriumSolver::EquilibriumSolver(const StiffnessPattern& pattern) : impl_(std::make_unique<Impl>(pattern)) {
     if (pattern.rows() == 0) return;
     use_one_blas_thread();
+    const SerialOpenMp serial;
     std::vector<std::int64_t> order = impl_->ordering();
     cholmod_sparse K = sparse_view(pattern.column_first(), pattern.row(), nullptr);
     impl_->factor.reset(cholmod_l_analyze_p(&K, order.data(), nullptr, 0, impl_->common.get()));
@@ -120,6 +149,7 @@ EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = 
 
 void EquilibriumSolver::factorize(std::span<const double> values) {
     if (impl_->pattern.rows() == 0) return;
+    const SerialOpenMp serial;
     cholmod_sparse K = sparse_view(impl_->pattern.column_first(), impl_->pattern.row(), values.data());
     impl_->factored = false;
     if (cholmod_l_factorize(&K, impl_->factor.get(), impl_->common.get()) == 0)
@@ -134,6 +164,7 @@ void EquilibriumSolver::factorize(std::span<const double> values) {
 Eigen::MatrixXd EquilibriumSolver::solve(const Eigen::MatrixXd& loads_n) const {
     if (impl_->pattern.rows() == 0) return loads_n;
     if (!impl_->factored) throw SolverFailure("equilibrium solver: solve() was called before factorize()");
+    const SerialOpenMp serial;
     cholmod_dense b{};
     b.nrow = b.d = static_cast<std::size_t>(loads_n.rows());
     b.ncol = static_cast<std::size_t>(loads_n.cols());
