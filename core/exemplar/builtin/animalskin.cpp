@@ -41,7 +41,7 @@ PatternPictures draw_animalskin() {
     const std::vector<Vec2> centers = scatter(torus, 16, 16, 30);
     std::vector<Stroke> blobs;
     for (std::size_t i = 0; i < centers.size(); ++i) add_rosette(centers[i], 14.5, i, blobs);
-    const Ink coat = ink(0xF0C987), warm = ink(0xC98A3E), rim = ink(0x8A5620);
+    const Ink coat = ink(0xF0C987), warm = ink(0xD69A4E);
     const Ink spot = ink(0x2A1A10), spot_core = ink(0x3B2415);
     return draw(192, 192, [&](const Vec2& p) -> Sample {
         double outside = std::numeric_limits<double>::infinity(), middle = outside;
@@ -49,8 +49,7 @@ PatternPictures draw_animalskin() {
         for (const Vec2& c : centers) middle = std::min(middle, torus.shortest(p - c).norm());
         if (outside < 0) return {-outside, mix(spot, spot_core, -outside / 4)};
         // The coat is darker inside a rosette, as on the animal.
-        const Ink base = mix(warm, coat, (middle - 8) / 9);
-        return {-outside, mix(rim, base, outside / 3)};
+        return {-outside, mix(warm, coat, (middle - 7) / 10)};
     });
 }
 

@@ -8,7 +8,7 @@ namespace fretwork::drawing {
 
 PatternPictures draw_bricks() {
     constexpr int kSide = 192, kCourses = 6, kPerCourse = 3;
-    const Relief relief{ink(0x7F2F1D), ink(0xD9774E), ink(0x3A2A26), ink(0x5B433B), 5.0, 10.0};
+    const Relief relief{ink(0xA9492B), ink(0xDC7F55), ink(0x3A2A26), ink(0x5B433B), 5.0, 10.0};
     return draw(kSide, kSide, [&](const Vec2& p) {
         constexpr double kHeight = static_cast<double>(kSide) / kCourses,
                          kLength = static_cast<double>(kSide) / kPerCourse;

@@ -37,7 +37,7 @@ std::vector<Disc> pack(const Torus& torus, double largest, double smallest, doub
 PatternPictures draw_bubbles() {
     const Torus torus{192, 192};
     const std::vector<Disc> discs = pack(torus, 29.0, 5.5, 8.2, 61);
-    const Relief relief{ink(0x3A86C8), ink(0xEAF6FF), ink(0x10294A), ink(0x1D4E89), 4.5, 14.0};
+    const Relief relief{ink(0x9CC9E8), ink(0xEEF7FE), ink(0x10294A), ink(0x1D4E89), 4.5, 14.0};
     // The picture's border lies where it meets edges as often as any other line does, so that it is seen to tile.
     const Vec2 corner(166, 62);
     return draw(192, 192, [&](const Vec2& pixel) {

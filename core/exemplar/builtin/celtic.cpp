@@ -21,8 +21,8 @@ enum class Tile { kCross, kTurnUp, kTurnSide };
 /// A repeating arrangement of turns that closes some strands into loops.
 Tile tile_at(int i, int j) {
     const int a = ((i % kAcross) + kAcross) % kAcross, b = ((j % kAcross) + kAcross) % kAcross;
-    if (a == 3 && b == 3) return Tile::kTurnUp;
-    if (a == 0 && b == 0) return Tile::kTurnSide;
+    if ((a == 3 && b == 3) || (a == 0 && b == 0)) return Tile::kTurnUp;
+    if ((a == 3 && b == 1) || (a == 3 && b == 5) || (a == 0 && b == 2) || (a == 0 && b == 4)) return Tile::kTurnSide;
     return Tile::kCross;
 }
 
@@ -55,13 +55,13 @@ Strand strand_at(const Vec2& p) {
 }  // namespace
 
 PatternPictures draw_celtic() {
-    const Ink edge = ink(0x5C3D0B), gold = ink(0xD9A441), shine = ink(0xFFE9A8);
+    const Ink edge = ink(0x5C3D0B), rim = ink(0xA87A28), gold = ink(0xD9A441), shine = ink(0xFFE9A8);
     const Ink moss = ink(0x12372A), fern = ink(0x1F5A41);
     return draw(192, 192, [&](const Vec2& p) -> Sample {
         const Strand s = strand_at(p);
         const double distance = s.from_middle - kHalfStrand;
         if (distance > 0) return {distance, mix(moss, fern, distance / 8)};
-        Ink color = mix(edge, mix(gold, shine, (-distance - 3.6) / 3.6), -distance / 3.6);
+        Ink color = mix(rim, mix(gold, shine, (-distance - 3.6) / 3.6), -distance / 3.6);
         // The strand below darkens towards the one above.
         color = mix(edge, color, s.under / 3.5);
         return {distance, color};

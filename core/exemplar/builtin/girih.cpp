@@ -21,9 +21,9 @@ double eight_star(const Vec2& p, double r) {
 
 PatternPictures draw_girih() {
     constexpr int kSide = 192, kStars = 2;
-    constexpr double kPitch = static_cast<double>(kSide) / kStars, kHalfStrap = 4.6;
+    constexpr double kPitch = static_cast<double>(kSide) / kStars, kHalfStrap = 4.0;
     const Torus cell{kPitch, kPitch};
-    const Ink edge = ink(0x14505C), tile = ink(0x3FB8AF), glaze = ink(0xF3FBF5);
+    const Ink edge = ink(0x3AA6A0), tile = ink(0x5CC9BF), glaze = ink(0xD6F5EC);
     const Ink night = ink(0x1B1F4B), lapis = ink(0x2C3E94);
     return draw(kSide, kSide, [&](const Vec2& p) -> Sample {
         const Vec2 at_star = cell.shortest(p - Vec2::Constant(kPitch / 2));

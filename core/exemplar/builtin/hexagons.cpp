@@ -12,7 +12,7 @@ PatternPictures draw_hexagons() {
     // Four columns and four rows of hexagons of side 32: 4 sqrt(3) 32 = 221.7 wide, rounded to 222.
     constexpr int kWidth = 222, kHeight = 192, kColumns = 4, kRows = 4;
     const Torus torus{kWidth, kHeight};
-    const Relief relief{ink(0x8A4B08), ink(0xFFC145), ink(0x2D1A05), ink(0x4A2C0A), 5.5, 9.0};
+    const Relief relief{ink(0xC67C12), ink(0xFFC64F), ink(0x2D1A05), ink(0x4A2C0A), 5.5, 9.0};
     return draw(kWidth, kHeight, [&](const Vec2& p) {
         constexpr double kApothem = kWidth / (2.0 * kColumns), kHalfWall = 5.0, kCorner = 6.0;
         Vec2 way = Vec2::Constant(std::numeric_limits<double>::max() / 4);

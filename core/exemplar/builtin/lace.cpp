@@ -36,7 +36,7 @@ PatternPictures draw_lace() {
     // Rosettes on a triangular lattice, two per picture of 128 x 222 (128 sqrt(3) = 221.7).
     constexpr int kWidth = 128, kHeight = 222;
     const Torus torus{kWidth, kHeight};
-    const Relief relief{ink(0xC98B9B), ink(0xFFFAF5), ink(0x5B2A3C), ink(0x7A3B52), 4.5, 7.0};
+    const Relief relief{ink(0xE6C3C8), ink(0xFFFAF5), ink(0x5B2A3C), ink(0x7A3B52), 4.5, 7.0};
     return draw(kWidth, kHeight, [&](const Vec2& p) {
         double hole = std::numeric_limits<double>::infinity();
         for (int r = 0; r < 2; ++r) {

@@ -42,15 +42,14 @@ PatternPictures draw_leafveins() {
             }
             veins.emplace_back(std::move(points), std::move(radius));
             // A finer vein crosses from half-way to the side vein above.
-            for (const double from : {0.36, 0.70}) {
+            for (const double from : {0.33, 0.64}) {
                 const double x = midrib_x(y0) + side * kHalf * from, y = y0 - 34 * from - 16 * from * from;
-                const double lean = 10 * (random_unit(81, static_cast<std::uint64_t>(k), side > 0 ? 1 : 0) - 0.5);
                 veins.emplace_back(
-                    spline({{x, y}, {x + side * 5, y - kPitch * 0.5}, {x + lean * 0.3, y - kPitch}}, 6, false),
-                    std::vector<double>(13, 4.3));
+                    spline({{x, y}, {x + side * 4, y - kPitch * 0.5}, {x + side * 2, y - kPitch}}, 6, false),
+                    std::vector<double>(13, 4.2));
             }
         }
-    const Relief relief{ink(0x2F5D1E), ink(0xC5DE7A), ink(0x0F2A1A), ink(0x1E4A2C), 5.0, 8.0};
+    const Relief relief{ink(0x7FA83B), ink(0xCBE283), ink(0x0F2A1A), ink(0x1E4A2C), 5.0, 8.0};
     return draw(static_cast<int>(kSide), static_cast<int>(kSide), [&](const Vec2& p) {
         double distance = Stroke::kNear;
         for (const Stroke& v : veins) distance = smooth_min(distance, v.distance(p, torus), 7.0);

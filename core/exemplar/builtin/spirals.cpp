@@ -17,7 +17,7 @@ constexpr double kPitch = 96, kRowPitch = 83, kHalfLine = 4.8;
 /// One arm from near the middle outwards, ending on the right (`turn` 0) or on the left (`turn` pi) half-way to the
 /// neighbour.
 std::vector<Vec2> arm(const Vec2& center, double handed, double turn) {
-    constexpr double kInner = 5.5, kTurns = 1.25, kOuter = kPitch / 2;
+    constexpr double kInner = 3.8, kTurns = 1.0, kOuter = kPitch / 2;
     std::vector<Vec2> points;
     constexpr int kSteps = 60;
     for (int k = 0; k <= kSteps; ++k) {
@@ -44,13 +44,13 @@ PatternPictures draw_spirals() {
                 strokes.emplace_back(std::move(points), std::move(radius));
             }
         }
-    const Relief relief{ink(0x5A2A0C), ink(0xE9B872), ink(0x123C3A), ink(0x1F6B62), 4.5, 8.0};
+    const Relief relief{ink(0xA8642B), ink(0xEBBC78), ink(0x123C3A), ink(0x1F6B62), 4.5, 8.0};
     // The picture's border lies where it meets edges as often as any other line does, so that it is seen to tile.
-    const Vec2 corner(8, 32);
+    const Vec2 corner(32, 32);
     return draw(192, 166, [&](const Vec2& pixel) {
         const Vec2 p = pixel + corner;
         double distance = Stroke::kNear;
-        for (const Stroke& s : strokes) distance = smooth_min(distance, s.distance(p, torus), 4.0);
+        for (const Stroke& s : strokes) distance = smooth_min(distance, s.distance(p, torus), 1.5);
         return shade(distance, relief);
     });
 }

@@ -22,9 +22,8 @@ double ribbon_phase(const Vec2& p) {
 }  // namespace
 
 PatternPictures draw_waves() {
-    const Ink foam = ink(0xF4FAF7), teal = ink(0x2A9D8F), blue = ink(0x1B6CA8);
-    const Ink deep = ink(0x0B2545), night = ink(0x13315C);
-    return draw(192, 192, [&](const Vec2& p) -> Sample {
+    const Relief relief{ink(0x2B86B5), ink(0x8FD3E3), ink(0x13315C), ink(0x0B2545), 5.5, 6.0};
+    return draw(192, 192, [&](const Vec2& p) {
         constexpr double kStep = 0.25;
         const double phase = ribbon_phase(p);
         const Vec2 slope((ribbon_phase(p + Vec2(kStep, 0)) - ribbon_phase(p - Vec2(kStep, 0))) / (2 * kStep),
@@ -32,10 +31,7 @@ PatternPictures draw_waves() {
         // Solid is the half of each turn around the whole numbers; the slope turns phase into px.
         const double from_middle = std::abs(phase - std::round(phase));
         const double distance = (from_middle - 0.25) / slope.norm();
-        if (distance > 0) return {distance, mix(night, deep, distance / 6)};
-        const int ribbon = (static_cast<int>(std::round(phase)) % kRibbons + kRibbons) % kRibbons;
-        const Ink body = mix(blue, teal, ribbon % 2 == 0 ? 0.85 : 0.15);
-        return {distance, mix(foam, body, -distance / 4.5)};
+        return shade(distance, relief);
     });
 }
 
