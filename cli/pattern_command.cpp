@@ -67,7 +67,8 @@ int show_pattern(const ShowOptions& options, Interrupt& interrupt) {
 int preview_pattern(PreviewOptions options, Interrupt& interrupt) {
     check_target(options.output, {options.model.path, options.pattern.exemplar});
     if (options.pattern.preset.empty()) options.pattern.preset = "draft";
-    const Settings settings = settings_of(options.pattern);
+    Settings settings = settings_of(options.pattern);
+    if (options.model.path.empty()) settings.keep.push_back(vase_lip());
     const RunControl run = control_of(options.run, interrupt);
     ChosenExemplar chosen = exemplar_of(settings);
     CarveInput input;

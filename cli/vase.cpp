@@ -29,7 +29,6 @@ TriangleMesh make_vase() {
     }
     const auto bottom = static_cast<std::uint32_t>(vase.positions_mm.size());
     vase.positions_mm.emplace_back(0.0, 0.0, 0.0);
-    vase.positions_mm.emplace_back(0.0, 0.0, kHeightMm);
     for (std::uint32_t segment = 0; segment < kSegments; ++segment) {
         const std::uint32_t next = (segment + 1) % kSegments;
         for (std::uint32_t ring = 0; ring < kRings; ++ring) {
@@ -37,11 +36,13 @@ TriangleMesh make_vase() {
             vase.triangles.push_back({low + segment, low + next, high + next});
             vase.triangles.push_back({low + segment, high + next, high + segment});
         }
-        constexpr std::uint32_t top = kRings * kSegments;
         vase.triangles.push_back({bottom, next, segment});
-        vase.triangles.push_back({bottom + 1, top + segment, top + next});
     }
     return vase;
+}
+
+Region vase_lip() {
+    return {"the lip", OpenBorderRegion{2.0}};
 }
 
 }  // namespace fretwork::cli

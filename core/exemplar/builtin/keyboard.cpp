@@ -52,7 +52,7 @@ Key key_at(const Vec2& p) {
 
 PatternPictures draw_keyboard() {
     const std::array<Ink, 4> caps = {ink(0xF4EBDD), ink(0xF4EBDD), ink(0xE7D3BC), ink(0x7FA8A3)};
-    const std::array<Ink, 4> skirts = {ink(0xC3B09A), ink(0xC3B09A), ink(0xA98D72), ink(0x4C7672)};
+    const std::array<Ink, 4> skirts = {ink(0xD2C0A9), ink(0xD2C0A9), ink(0xC0A58A), ink(0x5F8B86)};
     const Ink gap = ink(0x2B2F36), slot = ink(0x16181C);
     return draw(static_cast<int>(kSide), static_cast<int>(kSide), [&](const Vec2& p) -> Sample {
         const Key key = key_at(p);

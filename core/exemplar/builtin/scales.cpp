@@ -13,7 +13,7 @@ PatternPictures draw_scales() {
     constexpr double kPitchX = static_cast<double>(kWidth) / kPerRow, kPitchY = static_cast<double>(kHeight) / kRows;
     constexpr double kRadius = kPitchX / 2 + 5.0, kHalfBand = 4.8;
     const Torus torus{kWidth, kHeight};
-    const Ink edge = ink(0x0B4F6C), jade = ink(0x2EC4B6), foam = ink(0xE9FBF4), gold = ink(0xF2C14E);
+    const Ink edge = ink(0x17788A), jade = ink(0x2EC4B6), foam = ink(0xE9FBF4), gold = ink(0xF2C14E);
     const Ink deep = ink(0x061A2B), sea = ink(0x0A3049);
     // The picture's border lies where it meets edges as often as any other line does, so that it is seen to tile.
     const Vec2 corner(2, 10);
