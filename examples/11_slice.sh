@@ -5,4 +5,4 @@ needs prusa-slicer
 awk -f models/vase.awk > "$OUT/vase.off"
 
 "$FRETWORK" carve "$OUT/vase.off" --pattern ./vase.toml -D exemplar.pattern=bubbles --resolution "$RESOLUTION" -o "$OUT/11_slice.3mf"
-prusa-slicer --export-gcode --support-material --fill-density 0 -o "$OUT/11_slice.gcode" "$OUT/11_slice.3mf" > "$OUT/11_slice.log"
+prusa-slicer --export-gcode --support-material --layer-height 0.3 -o "$OUT/11_slice.gcode" "$OUT/11_slice.3mf" > "$OUT/11_slice.log"
