@@ -1,0 +1,390 @@
+// How alike our patterns and their exemplars are, on the scale crop < good 2D synthesis < patch tiling < noise.
+// Markdown on stdout, or into a document's section. See likeness/likeness_meter.h for the measures.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/exemplar/builtin/builtin_patterns.h"
+#include "core/pipeline/choose_exemplar.h"
+#include "core/pipeline/settings_schema.h"
+#include "formats/image_file.h"
+#include "formats/mesh_file.h"
+#include "likeness/baselines.h"
+#include "likeness/likeness_meter.h"
+#include "markdown.h"
+#include "pattern_run.h"
+#include "support/make_meshes.h"
+
+namespace {
+
+using namespace fretwork;
+using namespace fretwork::bench;
+using namespace fretwork::likeness;
+namespace fs = std::filesystem;
+
+struct Options {
+    std::string data, only, pictures, document;
+    std::vector<std::string> trials;
+    int seeds = 3, plate = 160, curved = 144;
+    bool structure = true;
+};
+
+/// What is compared: baselines and our own, in the order of the columns.
+struct Variant {
+    std::string name;
+    Settings settings;
+};
+
+struct Series {
+    std::vector<Likeness> by_seed;
+    std::vector<double> solid_fraction;
+
+    [[nodiscard]] Likeness mean() const { return mean_of(by_seed); }
+    /// Standard error over the seeds.
+    [[nodiscard]] double error(double (*value)(const Likeness&)) const {
+        const double center = value(mean());
+        double sum = 0.0;
+        for (const Likeness& l : by_seed) sum += (value(l) - center) * (value(l) - center);
+        const auto n = static_cast<double>(by_seed.size());
+        return n < 2 ? 0.0 : std::sqrt(sum / (n - 1) / n);
+    }
+    [[nodiscard]] double mean_solid_fraction() const {
+        double sum = 0.0;
+        for (const double s : solid_fraction) sum += s;
+        return sum / static_cast<double>(std::max<std::size_t>(1, solid_fraction.size()));
+    }
+};
+
+/// Columns by name, in order of their first use.
+class Measured {
+  public:
+    Series& operator[](const std::string& column) {
+        const auto found = std::ranges::find(columns_, column, &std::pair<std::string, Series>::first);
+        return found != columns_.end() ? found->second : columns_.emplace_back(column, Series{}).second;
+    }
+    [[nodiscard]] const Series& at(const std::string& column) const {
+        return std::ranges::find(columns_, column, &std::pair<std::string, Series>::first)->second;
+    }
+    [[nodiscard]] std::vector<std::string> columns() const {
+        std::vector<std::string> names;
+        for (const auto& [name, series] : columns_) names.push_back(name);
+        return names;
+    }
+
+  private:
+    std::vector<std::pair<std::string, Series>> columns_;
+};
+
+struct ExemplarResult {
+    std::string name;
+    double solid_fraction = 0.0;
+    Measured flat;
+    std::map<std::string, Measured> curved;  ///< by model
+};
+
+double patches(const Likeness& l) {
+    return l.patches();
+}
+double worst_seam(const Likeness& l) {
+    return l.worst_seam;
+}
+
+std::vector<BenchExemplar> exemplars(const Options& options) {
+    std::vector<BenchExemplar> list;
+    const auto wanted = [&](const std::string& name) {
+        return options.only.empty() || ("," + options.only + ",").find("," + name + ",") != std::string::npos;
+    };
+    for (const char* name : {"cells", "lace", "celtic", "animalskin", "coral", "scales", "hooks", "waves", "zebra"})
+        if (wanted(name)) list.push_back(make_bench_exemplar(name, make_builtin(name)));
+    if (options.data.empty()) return list;
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(fs::path(options.data) / "exemplars")) files.push_back(entry);
+    std::ranges::sort(files);
+    for (const fs::path& file : files)
+        if (wanted(file.stem())) list.push_back(make_bench_exemplar(file.stem(), make_exemplar(read_image(file))));
+    return list;
+}
+
+std::vector<BenchModel> curved_models(const Options& options) {
+    std::vector<BenchModel> models;
+    if (options.curved <= 0) return models;
+    models.push_back(make_model("vase", testing::make_vase(100, 96, 96), options.curved, false));
+    const fs::path bunny = fs::path(options.data) / "meshes" / "bunny_cgal.off";
+    if (options.data.empty() || !fs::exists(bunny)) {
+        models.push_back(make_model("torus", testing::make_torus(36, 14, 96, 48), options.curved, false));
+        return models;
+    }
+    TriangleMesh mesh = read_mesh(bunny).mesh;
+    for (Vec3& p : mesh.positions_mm) p = Vec3(p.x(), -p.z(), p.y());  // y is up in that file
+    models.push_back(make_model("bunny", std::move(mesh), options.curved, false));
+    return models;
+}
+
+std::vector<Variant> variants(const Options& options) {
+    std::vector<Variant> list{{"default", {}}, {"paper", {}}};
+    apply_preset(list[1].settings, Preset::kPaper);
+    for (const std::string& trial : options.trials) {
+        Variant v{trial, {}};
+        for (std::size_t at = 0; at < trial.size();) {
+            const std::size_t end = std::min(trial.find(';', at), trial.size());
+            apply_setting(v.settings, parse_assignment(trial.substr(at, end - at), "--trial"));
+            at = end + 1;
+        }
+        list.push_back(std::move(v));
+    }
+    return list;
+}
+
+void save(const Options& options, const std::string& name, const PatternPicture& picture) {
+    if (options.pictures.empty()) return;
+    Image image{picture.width, picture.height, {}, false};
+    const auto byte = [](float value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0F, 1.0F) * 255 + 0.5F); };
+    for (const PatternPixel& p : picture.pixels) image.pixels.push_back({byte(p[0]), byte(p[1]), byte(p[2]), 255});
+    write_image(fs::path(options.pictures) / (name + ".png"), image);
+}
+
+/// Flat windows as many as are gathered on a curved model, so that both are measured alike.
+std::vector<Windows> flat_windows(PatternPicture picture, std::size_t count, int levels, std::uint64_t seed) {
+    std::vector<Windows> result;
+    for (int l = 0; l < levels; ++l) {
+        if (l > 0) picture = halved(picture);
+        result.push_back(some_windows(all_windows(picture), count, seed).windows);
+    }
+    return result;
+}
+
+constexpr MeterSettings kCurvedMeter{.samples = 400, .levels = 2};
+constexpr std::size_t kCurvedWindows = 1000;
+
+struct Meters {
+    LikenessMeter flat, curved;
+};
+
+void measure_baselines(const Options& options, const BenchExemplar& e, const Meters& meters, std::uint64_t seed,
+                       ExemplarResult& result) {
+    using MakeMap = SourceMap (*)(const PatternPicture&, int, std::uint64_t);
+    const std::pair<const char*, MakeMap> baselines[] = {
+        {"crop", crop_map}, {"2D synthesis", synthesized_map}, {"tiling", tiled_map}, {"noise", noise_map}};
+    for (const auto& [name, make_map] : baselines) {
+        const PatternPicture picture =
+            likeness::picture_of(make_map(e.reference, options.plate, seed), e.reference, seed);
+        save(options, fmt::format("{}-{}-{}", e.name, name, seed), picture);
+        result.flat[name].by_seed.push_back(meters.flat.measure(picture));
+        result.flat[name].solid_fraction.push_back(picture.solid_fraction());
+        if (options.curved > 0)
+            result.curved["flat"][name].by_seed.push_back(
+                meters.curved.measure(flat_windows(picture, kCurvedWindows, kCurvedMeter.levels, seed)));
+    }
+}
+
+void measure_flat(const Options& options, const BenchModel& plate, const BenchExemplar& e, const Meters& meters,
+                  const Variant& variant, std::uint64_t seed, ExemplarResult& result) {
+    Settings settings = variant.settings;
+    settings.synthesis.search.seed = seed;
+    const PatternRun run =
+        run_pattern(plate, e, settings, options.structure ? WithStructure::kYes : WithStructure::kNo);
+    const auto note = [&](const std::string& column, const ShownPattern& pattern, double solid_fraction) {
+        const PatternPicture picture = plate_picture(plate, pattern, e.reference);
+        save(options, fmt::format("{}-{}-{}", e.name, column, seed), picture);
+        Series& series = result.flat[column];
+        series.by_seed.push_back(meters.flat.measure(picture));
+        series.solid_fraction.push_back(solid_fraction);
+    };
+    note(variant.name, run.first, run.solid_fraction);
+    if (!options.structure) return;
+    note(variant.name + ", painted", run.painted, run.solid_fraction_after);
+    note(variant.name + ", resynthesised", run.resynthesized, run.solid_fraction_after);
+}
+
+void measure_curved(const BenchModel& model, const BenchExemplar& e, const Meters& meters, const Variant& variant,
+                    std::uint64_t seed, ExemplarResult& result) {
+    Settings settings = variant.settings;
+    settings.synthesis.search.seed = seed;
+    const PatternRun run = run_pattern(model, e, settings, WithStructure::kNo);
+    Series& series = result.curved[model.name][variant.name];
+    series.by_seed.push_back(meters.curved.measure(
+        surface_windows(model.pyramid.levels[0], run.first, e.reference, kCurvedWindows, kCurvedMeter.levels, seed)));
+    series.solid_fraction.push_back(run.solid_fraction);
+}
+
+ExemplarResult measure(const Options& options, const BenchExemplar& e, const BenchModel& plate,
+                       const std::vector<BenchModel>& curved) {
+    ExemplarResult result{e.name, e.reference.solid_fraction(), {}, {}};
+    const Meters meters{LikenessMeter(e.reference), LikenessMeter(e.reference, kCurvedMeter)};
+    for (int s = 1; s <= options.seeds; ++s) {
+        const auto seed = static_cast<std::uint64_t>(s);
+        measure_baselines(options, e, meters, seed, result);
+        for (const Variant& variant : variants(options)) {
+            measure_flat(options, plate, e, meters, variant, seed, result);
+            for (const BenchModel& model : curved) measure_curved(model, e, meters, variant, seed, result);
+        }
+    }
+    return result;
+}
+
+/// Whether ours lies between crop and good synthesis; differences within two standard errors are none.
+std::string verdict(const Series& ours, const Series& good) {
+    double worst = 0.0;
+    bool above = false;
+    for (const auto value : {patches, worst_seam}) {
+        const double mine = value(ours.mean()), theirs = value(good.mean());
+        const double noise = 2.0 * std::hypot(ours.error(value), good.error(value));
+        above = above || mine > theirs + noise;
+        worst = std::max(worst, mine / std::max(theirs, 1e-9));
+    }
+    return above ? fmt::format("no, {:.2f} x 2D synthesis", worst) : "yes";
+}
+
+std::string table_of(const std::vector<ExemplarResult>& results, double (*value)(const Likeness&),
+                     const std::function<const Measured&(const ExemplarResult&)>& part) {
+    const std::vector<std::string> columns = part(results.front()).columns();
+    std::vector<std::string> heads{"exemplar"};
+    heads.insert(heads.end(), columns.begin(), columns.end());
+    MarkdownTable table(heads);
+    std::vector<double> sums(columns.size(), 0.0);
+    for (const ExemplarResult& r : results) {
+        std::vector<std::string> cells{r.name};
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            const double v = value(part(r).at(columns[c]).mean());
+            sums[c] += v / static_cast<double>(results.size());
+            cells.push_back(fmt::format("{:.3f}", v));
+        }
+        table.add(cells);
+    }
+    std::vector<std::string> means{"**mean**"};
+    for (const double s : sums) means.push_back(fmt::format("**{:.3f}**", s));
+    table.add(means);
+    return table.text();
+}
+
+std::string verdict_table(const std::vector<ExemplarResult>& results, const std::vector<BenchModel>& curved) {
+    std::vector<std::string> heads{"exemplar", "plate, default", "plate, paper"};
+    for (const BenchModel& m : curved) heads.push_back(m.name + ", default");
+    MarkdownTable table(heads);
+    for (const ExemplarResult& r : results) {
+        std::vector<std::string> cells{r.name, verdict(r.flat.at("default"), r.flat.at("2D synthesis")),
+                                       verdict(r.flat.at("paper"), r.flat.at("2D synthesis"))};
+        for (const BenchModel& m : curved)
+            cells.push_back(verdict(r.curved.at(m.name).at("default"), r.curved.at("flat").at("2D synthesis")));
+        table.add(cells);
+    }
+    return table.text();
+}
+
+std::string shape_table(const Options& options, const std::vector<ExemplarResult>& results,
+                        const std::vector<BenchModel>& curved) {
+    std::vector<std::string> heads{"exemplar", "solid of exemplar", "solid, plate"};
+    for (const BenchModel& m : curved) heads.push_back("solid, " + m.name);
+    if (options.structure) heads.emplace_back("solid, plate, reinforced");
+    heads.insert(heads.end(), {"within 5 points", "chords: 2D synthesis / ours", "thickness: 2D synthesis / ours",
+                               "coverage: crop / 2D synthesis / ours"});
+    MarkdownTable table(heads);
+    for (const ExemplarResult& r : results) {
+        const Series &ours = r.flat.at("default"), &good = r.flat.at("2D synthesis");
+        std::vector<double> fractions = ours.solid_fraction;
+        std::vector<std::string> cells{r.name, fmt::format("{:.3f}", r.solid_fraction),
+                                       fmt::format("{:.3f}", ours.mean_solid_fraction())};
+        for (const BenchModel& m : curved) {
+            const Series& s = r.curved.at(m.name).at("default");
+            cells.push_back(fmt::format("{:.3f}", s.mean_solid_fraction()));
+            fractions.insert(fractions.end(), s.solid_fraction.begin(), s.solid_fraction.end());
+        }
+        if (options.structure)
+            cells.push_back(fmt::format("{:.3f}", r.flat.at("default, resynthesised").mean_solid_fraction()));
+        double worst = 0.0;
+        for (const double f : fractions) worst = std::max(worst, std::abs(f - r.solid_fraction));
+        cells.push_back(fmt::format("{} ({:.1f})", worst <= 0.05 ? "yes" : "no", 100 * worst));
+        const Likeness a = r.flat.at("crop").mean(), b = good.mean(), c = ours.mean();
+        cells.push_back(fmt::format("{:.3f} / {:.3f}", b.chords, c.chords));
+        cells.push_back(fmt::format("{:.3f} / {:.3f}", b.thickness, c.thickness));
+        cells.push_back(fmt::format("{:.2f} / {:.2f} / {:.2f}", a.coverage, b.coverage, c.coverage));
+        table.add(cells);
+    }
+    return table.text();
+}
+
+/// Baselines and our own on one model, side by side.
+Measured beside_baselines(const ExemplarResult& r, const std::string& model) {
+    Measured all = r.curved.at("flat");
+    for (const std::string& column : r.curved.at(model).columns()) all[column] = r.curved.at(model).at(column);
+    return all;
+}
+
+std::string document(const Options& options, const std::vector<ExemplarResult>& results,
+                     const std::vector<BenchModel>& curved) {
+    const auto flat = [](const ExemplarResult& r) -> const Measured& { return r.flat; };
+    std::string text = fmt::format(
+        "Means over {} seeds; plates of {} x {} voxels; 0 = as alike as can be. *Resynthesised*: after the loop of "
+        "Algorithm 1; *painted*: its bridges laid over the first synthesis instead.\n\n",
+        options.seeds, options.plate, options.plate);
+    text +=
+        "**Between crop and good 2D synthesis?** Patch similarity and worst seam both; differences within two "
+        "standard errors count as none.\n\n" +
+        verdict_table(results, curved);
+    text += "\n**Bidirectional patch similarity, plate**\n\n" + table_of(results, patches, flat);
+    text += "\n**Worst seams, plate**\n\n" + table_of(results, worst_seam, flat);
+    text +=
+        "\n**Shapes, default preset.** In brackets: the largest difference of any run before reinforcement, in "
+        "points.\n\n" +
+        shape_table(options, results, curved);
+    for (const BenchModel& model : curved) {
+        std::vector<Measured> kept;
+        kept.reserve(results.size());
+        for (const ExemplarResult& r : results) kept.push_back(beside_baselines(r, model.name));
+        const auto on_model = [&](const ExemplarResult& r) -> const Measured& {
+            return kept[static_cast<std::size_t>(&r - results.data())];
+        };
+        text += fmt::format(
+                    "\n**Patch similarity, {} at {} voxels** ({} tangent windows; baselines measured the same "
+                    "way on flat ones)\n\n",
+                    model.name, options.curved, kCurvedWindows) +
+                table_of(results, patches, on_model);
+        text += fmt::format("\n**Worst seams, {}**\n\n", model.name) + table_of(results, worst_seam, on_model);
+    }
+    return text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App app("How alike patterns and their exemplars are");
+    app.add_option("--data", options.data, "folder with exemplars/ and meshes/")->check(CLI::ExistingDirectory);
+    app.add_option("--only", options.only, "exemplars, separated by commas");
+    app.add_option("--seeds", options.seeds, "runs per exemplar")->check(CLI::Range(1, 100));
+    app.add_option("--plate", options.plate, "voxels along the plate")->check(CLI::Range(64, 1024));
+    app.add_option("--curved", options.curved, "voxels along curved models; 0 leaves them out")
+        ->check(CLI::Range(0, 1024));
+    app.add_option("--trial", options.trials, "one more column: key=value, several separated by ';'");
+    app.add_flag("!--no-structure", options.structure, "leave reinforcement out");
+    app.add_option("--pictures", options.pictures, "folder for pictures of all plates")->check(CLI::ExistingDirectory);
+    app.add_option("--write", options.document, "document whose section 'likeness' is replaced");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        const BenchModel plate = make_plate(options.plate);
+        const std::vector<BenchModel> curved = curved_models(options);
+        std::vector<ExemplarResult> results;
+        for (const BenchExemplar& e : exemplars(options)) {
+            fmt::print(stderr, "{}\n", e.name);
+            results.push_back(measure(options, e, plate, curved));
+        }
+        if (results.empty()) throw std::runtime_error("no exemplar of that name");
+        const std::string text = document(options, results, curved);
+        if (options.document.empty())
+            fmt::print("{}", text);
+        else
+            write_section(options.document, "likeness", text);
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "likeness: {}\n", e.what());
+        return 1;
+    }
+    return 0;
+}
