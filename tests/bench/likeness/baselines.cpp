@@ -35,10 +35,10 @@ int wrapped(int i, int n) {
 /// One level of the search of `synthesized_map`.
 class WindowMatcher {
   public:
-    WindowMatcher(const PatternPicture& exemplar, SourceMap start, std::uint64_t seed)
+    WindowMatcher(const PatternPicture& exemplar, SourceMap start, bool use_similar, std::uint64_t seed)
         : e_(exemplar), map_(std::move(start)), seed_(seed) {
         for (Place& p : map_.source) p = allowed(p);
-        list_similar();
+        if (use_similar) list_similar();
     }
 
     /// Visits all pixels once. With `everywhere`, every place of the exemplar is a candidate.
@@ -98,9 +98,10 @@ class WindowMatcher {
                 const int nx = x + i, ny = y + j;
                 if ((i == 0 && j == 0) || nx < 0 || ny < 0 || nx >= map_.width || ny >= map_.height) continue;
                 const Place& n = map_.at(nx, ny);
-                const Place& twin = similar_[index(n)];
                 try_place({n[0] - i, n[1] - j});
-                if (std::abs(i) <= 1 && std::abs(j) <= 1) try_place({twin[0] - i, twin[1] - j});
+                if (similar_.empty() || std::abs(i) > 1 || std::abs(j) > 1) continue;
+                const Place& twin = similar_[index(n)];
+                try_place({twin[0] - i, twin[1] - j});
             }
         const auto item =
             static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(map_.width) + static_cast<std::uint64_t>(x);
@@ -178,8 +179,8 @@ SourceMap synthesized_map(const PatternPicture& exemplar, int side, std::uint64_
                 const Place& p = map.at(x / 2, y / 2);
                 return Place{2 * p[0] + x % 2, 2 * p[1] + y % 2};
             });
-        WindowMatcher matcher(pyramid[static_cast<std::size_t>(level)], std::move(map), seed);
-        const int passes = level == coarsest ? 8 : 3;
+        WindowMatcher matcher(pyramid[static_cast<std::size_t>(level)], std::move(map), level > 0, seed);
+        const int passes = level == coarsest ? 10 : 2 + 2 * level;
         for (int pass = 0; pass < passes; ++pass) matcher.pass(number++, level == coarsest);
         map = matcher.map();
     }

@@ -30,15 +30,15 @@ TEST_CASE("likeness meter: an exemplar is like itself", "[likeness]") {
 TEST_CASE("likeness meter: crop < good synthesis < patch tiling < noise", "[likeness][property]") {
     const std::string name = GENERATE("cells", "hooks", "zebra");
     CAPTURE(name);
-    const PatternPicture exemplar = builtin_picture(name, 96);
+    const PatternPicture exemplar = builtin_picture(name, 80);
     const LikenessMeter meter(exemplar, kSmall);
     std::vector<Likeness> crop, synthesis, tiling, noise;
-    for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    for (const std::uint64_t seed : {1u, 2u}) {
         const auto measured = [&](const SourceMap& map) { return meter.measure(picture_of(map, exemplar, seed)); };
-        crop.push_back(measured(crop_map(exemplar, 96, seed)));
-        synthesis.push_back(measured(synthesized_map(exemplar, 96, seed)));
-        tiling.push_back(measured(tiled_map(exemplar, 96, seed)));
-        noise.push_back(measured(noise_map(exemplar, 96, seed)));
+        crop.push_back(measured(crop_map(exemplar, 80, seed)));
+        synthesis.push_back(measured(synthesized_map(exemplar, 80, seed)));
+        tiling.push_back(measured(tiled_map(exemplar, 80, seed)));
+        noise.push_back(measured(noise_map(exemplar, 80, seed)));
     }
     const Likeness a = mean_of(crop), b = mean_of(synthesis), c = mean_of(tiling), d = mean_of(noise);
     CHECK(a.worst_seam < b.worst_seam);
