@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "core/shell/voxelize.h"
 #include "support/make_meshes.h"
@@ -29,8 +30,29 @@ TexelFrames flat_frames(const PyramidLevel& shell, double pixels_per_voxel, bool
     return frames;
 }
 
+double mean_distance_to(const PatternPicture& exemplar, const Windows& windows) {
+    const PlacedWindows all = all_windows(exemplar);
+    const WindowBasis basis = principal_basis(all.windows);
+    double sum = 0.0;
+    for (const Nearest& n : NearestWindows(all.windows, basis).nearest(windows)) sum += n.squared_distance;
+    return sum / static_cast<double>(windows.rows());
+}
+
+/// What it costs a window to be read half a pixel beside: where only the phase differs, no window costs more.
+double half_pixel_cost(const PatternPicture& exemplar) {
+    const PatternPicture half =
+        read_picture(exemplar, exemplar.width, exemplar.height, [](int x, int y) { return Vec2(x + 1.0, y + 1.0); });
+    double sum = 0.0;
+    for (std::size_t i = 0; i < half.pixels.size(); ++i)
+        for (std::size_t c = 0; c < 4; ++c) {
+            const double d = static_cast<double>(half.pixels[i][c] - exemplar.pixels[i][c]);
+            sum += d * d / static_cast<double>(half.pixels.size());
+        }
+    return sum * kWindowSide * kWindowSide;
+}
+
 TEST_CASE("surface windows: a flat pattern gives windows of its exemplar, a mirrored one does not", "[likeness]") {
-    PatternPicture exemplar = builtin_picture("hooks", 64);
+    const PatternPicture exemplar = builtin_picture("hooks", 64);
     // Slanted against the grid, so that voxel centres and window pixels differ.
     const TriangleMesh mesh = rotated(make_square(10, 2), Vec3(1, 0.3, 0.2), 1.0);
     const VoxelPyramid pyramid = pyramid_of(mesh, 48);
@@ -42,23 +64,31 @@ TEST_CASE("surface windows: a flat pattern gives windows of its exemplar, a mirr
         const std::vector<Windows> windows = surface_windows(shell, pattern, exemplar, 200, 2, 1);
         REQUIRE(windows.size() == 2);
         REQUIRE(windows[0].rows() > 50);
-        const PlacedWindows all = all_windows(exemplar);
-        const WindowBasis basis = principal_basis(all.windows);
-        double sum = 0.0;
-        for (const Nearest& n : NearestWindows(all.windows, basis).nearest(windows[0])) sum += n.squared_distance;
-        return sum / static_cast<double>(windows[0].rows());
+        return mean_distance_to(exemplar, windows[0]);
     };
     const double upright = mean_distance(false);
     CHECK(mean_distance(true) > 2 * upright);
-    // Only the phase of the pixels differs: less than what a half-pixel shift of the exemplar costs.
-    const PatternPicture half = read_picture(exemplar, 64, 64, [](int x, int y) { return Vec2(x + 1.0, y + 1.0); });
-    double shift = 0.0;
-    for (std::size_t i = 0; i < half.pixels.size(); ++i)
-        for (std::size_t c = 0; c < 4; ++c) {
-            const double d = static_cast<double>(half.pixels[i][c] - exemplar.pixels[i][c]);
-            shift += d * d / static_cast<double>(half.pixels.size());
-        }
-    CHECK(upright < shift * kWindowSide * kWindowSide);
+    CHECK(upright < half_pixel_cost(exemplar));
+}
+
+TEST_CASE("surface windows: a picture rolled around a cylinder gives windows of the picture", "[likeness]") {
+    const PatternPicture exemplar = builtin_picture("hooks", 64);
+    const double radius = 128 / (2 * std::numbers::pi);  // two pictures around, at one pixel per unit
+    const TriangleMesh mesh = revolve({{radius, 0}, {radius, 38}}, 96, false);
+    const VoxelPyramid pyramid = pyramid_of(mesh, 41);
+    const PyramidLevel& shell = pyramid.levels[0];
+    Vec3f middle = Vec3f::Zero();
+    for (const Vec3f& p : shell.positions) middle += p / static_cast<float>(shell.size());
+    ShownPattern pattern;
+    for (const Vec3f& p : shell.positions) {
+        const Vec3f out = Vec3f(p.x() - middle.x(), p.y() - middle.y(), 0);
+        const Vec3f right = Vec3f::UnitZ().cross(out.normalized());
+        const float turn = std::atan2(out.y(), out.x()) / (2 * std::numbers::pi_v<float>);
+        pattern.frames.push_back({128 * turn, -p.z(), right, -Vec3f::UnitZ()});
+    }
+    const std::vector<Windows> windows = surface_windows(shell, pattern, exemplar, 300, 2, 1);
+    REQUIRE(windows[0].rows() > 100);
+    CHECK(mean_distance_to(exemplar, windows[0]) < half_pixel_cost(exemplar));
 }
 
 TEST_CASE("surface windows: none reaches over an open border", "[likeness]") {
