@@ -34,7 +34,7 @@ struct Options {
     std::string data, only, pictures, document;
     std::vector<std::string> trials;
     int seeds = 3, plate = 160, curved = 144;
-    bool structure = true;
+    bool structure = true, paper = true;
 };
 
 /// What is compared: baselines and our own, in the order of the columns.
@@ -129,8 +129,11 @@ std::vector<BenchModel> curved_models(const Options& options) {
 }
 
 std::vector<Variant> variants(const Options& options) {
-    std::vector<Variant> list{{"default", {}}, {"paper", {}}};
-    apply_preset(list[1].settings, Preset::kPaper);
+    std::vector<Variant> list{{"default", {}}};
+    if (options.paper) {
+        list.push_back({"paper", {}});
+        apply_preset(list.back().settings, Preset::kPaper);
+    }
     for (const std::string& trial : options.trials) {
         Variant v{trial, {}};
         for (std::size_t at = 0; at < trial.size();) {
@@ -282,13 +285,16 @@ std::string table_of(const std::vector<ExemplarResult>& results, double (*value)
     return table.text();
 }
 
-std::string verdict_table(const std::vector<ExemplarResult>& results, const std::vector<BenchModel>& curved) {
-    std::vector<std::string> heads{"exemplar", "plate, default", "plate, paper"};
+std::string verdict_table(const Options& options, const std::vector<ExemplarResult>& results,
+                          const std::vector<BenchModel>& curved) {
+    const std::vector<Variant> all = variants(options);
+    std::vector<std::string> heads{"exemplar"};
+    for (const Variant& v : all) heads.push_back("plate, " + v.name);
     for (const BenchModel& m : curved) heads.push_back(m.name + ", default");
     MarkdownTable table(heads);
     for (const ExemplarResult& r : results) {
-        std::vector<std::string> cells{r.name, verdict(r.flat.at("default"), r.flat.at("2D synthesis")),
-                                       verdict(r.flat.at("paper"), r.flat.at("2D synthesis"))};
+        std::vector<std::string> cells{r.name};
+        for (const Variant& v : all) cells.push_back(verdict(r.flat.at(v.name), r.flat.at("2D synthesis")));
         for (const BenchModel& m : curved)
             cells.push_back(verdict(r.curved.at(m.name).at("default"), r.curved.at("flat").at("2D synthesis")));
         table.add(cells);
@@ -346,7 +352,7 @@ std::string document(const Options& options, const std::vector<ExemplarResult>& 
     text +=
         "**Between crop and good 2D synthesis?** Patch similarity and worst seam both; differences within two "
         "standard errors count as none.\n\n" +
-        verdict_table(results, curved);
+        verdict_table(options, results, curved);
     text += "\n**Bidirectional patch similarity, plate**\n\n" + table_of(results, patches, flat);
     text += "\n**Worst seams, plate**\n\n" + table_of(results, worst_seam, flat);
     text +=
@@ -383,6 +389,7 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(0, 1024));
     app.add_option("--trial", options.trials, "one more column: key=value, several separated by ';'");
     app.add_flag("!--no-structure", options.structure, "leave reinforcement out");
+    app.add_flag("!--no-paper", options.paper, "leave the preset 'paper' out");
     app.add_option("--pictures", options.pictures, "folder for pictures of all plates")->check(CLI::ExistingDirectory);
     app.add_option("--write", options.document, "document whose section 'likeness' is replaced");
     CLI11_PARSE(app, argc, argv);

@@ -49,6 +49,18 @@ TEST_CASE("likeness meter: crop < good synthesis < patch tiling < noise", "[like
     CHECK(c.patches() < d.patches());
 }
 
+TEST_CASE("likeness meter: worst seams are those few windows that match worst", "[likeness]") {
+    const PatternPicture exemplar = cells_picture(64);
+    PatternPicture flawed = exemplar;
+    flawed.wraps = false;
+    for (int y = 30; y < 36; ++y)
+        for (int x = 30; x < 36; ++x) flawed.pixels[static_cast<std::size_t>(64 * y + x)] = {0.0F, 1.0F, 0.0F, 0.5F};
+    const Likeness found = LikenessMeter(exemplar, {.samples = 3000, .levels = 1}).measure(flawed);
+    // 12 x 12 of 58 x 58 windows see the flaw, 4.3 %: all of them are among the worst 5 %, which hold all of the mean.
+    CHECK(found.coherence > 0.01);
+    CHECK(found.worst_seam == Approx(found.coherence / 0.05).epsilon(0.01));
+}
+
 TEST_CASE("likeness meter: collapse to one place is seen by coverage and completeness", "[likeness]") {
     PatternPicture exemplar = builtin_picture("animalskin", 64);
     exemplar.wraps = false;
