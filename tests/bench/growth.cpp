@@ -182,15 +182,15 @@ int main(int argc, char** argv) {
             atomic_write(fs::path(options.images) / "growth-memory.svg",
                          log_log_plot({"Peak memory during each stage", "surface voxels", "bytes"}, bytes));
         }
-        const std::string text =
-            fmt::format(
-                "{}, pattern `{}`, each row a process of its own. Exponents: fits of c x^p to the surface "
-                "voxels, from {} voxels on.\n\nSeconds of wall clock:\n\n",
-                options.data.empty() ? "A made vase" : "Bunny", options.pattern, kLeastFittedResolution) +
-            table_of(rows, seconds, "{:.2f}", 1.0) +
-            "\nPeak memory during the stage, MB (all that is held, not only "
-            "what the stage has added):\n\n" +
-            table_of(rows, bytes, "{:.0f}", 1e6);
+        std::string text = fmt::format(
+            "{}, pattern `{}`, each row a process of its own. Exponents: fits of c x^p to the surface "
+            "voxels, from {} voxels on.\n\n",
+            options.data.empty() ? "A made vase" : "Bunny", options.pattern, kLeastFittedResolution);
+        if (!options.images.empty())
+            text += "![Seconds per stage](images/growth-seconds.svg)\n![Peak memory](images/growth-memory.svg)\n\n";
+        text += "Seconds of wall clock:\n\n" + table_of(rows, seconds, "{:.2f}", 1.0);
+        text += "\nPeak memory during the stage, MB (all that is held, not only what the stage has added):\n\n" +
+                table_of(rows, bytes, "{:.0f}", 1e6);
         if (options.document.empty())
             fmt::print("{}", text);
         else
