@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <numeric>
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/float_rounding.h"
@@ -22,10 +21,14 @@ constexpr std::size_t kMostColors = 12;
 /// A colour this rare is not worth an area: it is a mixture along the border of two others.
 constexpr double kLeastShare = 0.01;
 constexpr int kRefinements = 4;
-/// A colour this close to a mixture of two others that are more frequent, and no more frequent than this, is the seam
-/// between them: too narrow to have two borders of its own.
-constexpr int kSeamDistance = 28;
-constexpr double kSeamShare = 0.2;
+/// A colour this close to a mixture of two others is the seam between them where at most this share of the triangles at
+/// its vertices are of one colour: too narrow to have two borders of its own.
+constexpr int kSeamDistance = 36;
+constexpr double kSeamShare = 0.5;
+
+/// Within this of a colour of the palette a colour is no mixture; how many rings of mixtures find their area.
+constexpr int kSure = 24;
+constexpr int kSettlePasses = 4;
 
 /// An edge this short, and a triangle this flat, is not cut: rounding would turn what comes out over.
 constexpr double kShortestCut = 0.04;  // of the mean edge
@@ -98,29 +101,6 @@ std::vector<ColorCell> group_by_nearest(const std::vector<ColorCell>& cells, con
     return group;
 }
 
-/// Takes the colours out of a palette that are seams between others, the rarest first.
-void drop_seams(const std::vector<ColorCell>& cells, std::vector<Rgb8>& palette) {
-    std::size_t total = 0;
-    for (const ColorCell& cell : cells) total += cell.count;
-    for (bool dropped = true; dropped && palette.size() > 2;) {
-        dropped = false;
-        const std::vector<ColorCell> group = group_by_nearest(cells, palette);
-        std::vector<std::size_t> order(palette.size());
-        std::iota(order.begin(), order.end(), std::size_t{0});
-        std::stable_sort(order.begin(), order.end(),
-                         [&](std::size_t a, std::size_t b) { return group[a].count < group[b].count; });
-        for (std::size_t i = 0; i < order.size() && !dropped; ++i)
-            for (std::size_t j = i + 1; j < order.size() && !dropped; ++j)
-                for (std::size_t k = j + 1; k < order.size() && !dropped; ++k) {
-                    const Rgb8& color = palette[order[i]];
-                    dropped = static_cast<double>(group[order[i]].count) <= kSeamShare * static_cast<double>(total) &&
-                              distance2_to_mixture(color, palette[order[j]], palette[order[k]]) <
-                                  kSeamDistance * kSeamDistance;
-                    if (dropped) palette.erase(palette.begin() + static_cast<std::ptrdiff_t>(order[i]));
-                }
-    }
-}
-
 /// Cuts one mesh.
 class AreaCutter {
   public:
@@ -132,8 +112,9 @@ class AreaCutter {
         result_.palette = choose_palette(colors_);
         result_.mesh.positions_mm = mesh_.positions_mm;
         result_.areas.of_vertex.resize(colors_.size());
-        parallel_for(colors_.size(), kGrain,
-                     [&](std::size_t v) { result_.areas.of_vertex[v] = nearest_color(result_.palette, colors_[v]); });
+        choose_areas();
+        while (drop_seam()) choose_areas();
+        settle_mixtures();
         merge_small();
         list_cut_edges();
         place_vertices();
@@ -148,6 +129,79 @@ class AreaCutter {
         return (static_cast<Edge>(std::min(a, b)) << 32) | std::max(a, b);
     }
     [[nodiscard]] std::uint8_t area(std::uint32_t v) const { return result_.areas.of_vertex[v]; }
+
+    void choose_areas() {
+        parallel_for(colors_.size(), kGrain,
+                     [&](std::size_t v) { result_.areas.of_vertex[v] = nearest_color(result_.palette, colors_[v]); });
+    }
+
+    /// Takes the narrowest of the seams between other colours out of the palette, if there is one.
+    bool drop_seam() {
+        std::vector<Rgb8>& palette = result_.palette;
+        std::vector<std::size_t> touching(palette.size(), 0), whole(palette.size(), 0);
+        for (const Triangle& t : mesh_.triangles) {
+            const std::uint8_t a = area(t[0]), b = area(t[1]), c = area(t[2]);
+            ++touching[a];
+            if (b != a) ++touching[b];
+            if (c != a && c != b) ++touching[c];
+            if (a == b && b == c) ++whole[a];
+        }
+        std::size_t narrowest = palette.size();
+        double least = kSeamShare;
+        for (std::size_t i = 0; i < palette.size(); ++i) {
+            const double share =
+                static_cast<double>(whole[i]) / static_cast<double>(std::max(touching[i], std::size_t{1}));
+            if (share >= least || !is_mixture(i)) continue;
+            least = share;
+            narrowest = i;
+        }
+        if (narrowest == palette.size()) return false;
+        palette.erase(palette.begin() + static_cast<std::ptrdiff_t>(narrowest));
+        return true;
+    }
+
+    [[nodiscard]] bool is_mixture(std::size_t color) const {
+        const std::vector<Rgb8>& palette = result_.palette;
+        for (std::size_t j = 0; j < palette.size(); ++j)
+            for (std::size_t k = j + 1; k < palette.size(); ++k)
+                if (j != color && k != color &&
+                    distance2_to_mixture(palette[color], palette[j], palette[k]) < kSeamDistance * kSeamDistance)
+                    return true;
+        return false;
+    }
+
+    /// A vertex whose colour is a mixture, as along every soft border, goes to one of the areas next to it, whatever
+    /// other colour of the palette the mixture is near to.
+    void settle_mixtures() {
+        std::vector<std::uint8_t> sure(colors_.size());
+        parallel_for(colors_.size(), kGrain, [&](std::size_t v) {
+            sure[v] = distance2(colors_[v], result_.palette[area(static_cast<std::uint32_t>(v))]) <= kSure * kSure;
+        });
+        std::vector<std::uint16_t> beside(colors_.size());
+        for (int pass = 0; pass < kSettlePasses; ++pass) {
+            std::fill(beside.begin(), beside.end(), std::uint16_t{0});
+            for (const Triangle& t : mesh_.triangles)
+                for (std::size_t k = 0; k < 3; ++k)
+                    if (sure[t[k]] != 0)
+                        for (const std::uint32_t v : {t[(k + 1) % 3], t[(k + 2) % 3]})
+                            if (sure[v] == 0) beside[v] = static_cast<std::uint16_t>(beside[v] | (1U << area(t[k])));
+            parallel_for(colors_.size(), kGrain, [&](std::size_t v) {
+                if (beside[v] == 0) return;
+                result_.areas.of_vertex[v] = nearest_of(beside[v], colors_[v]);
+                sure[v] = 1;
+            });
+        }
+    }
+
+    [[nodiscard]] std::uint8_t nearest_of(std::uint16_t areas, const Rgb8& color) const {
+        std::size_t best = result_.palette.size();
+        for (std::size_t i = 0; i < result_.palette.size(); ++i)
+            if (((areas >> i) & 1U) != 0 &&
+                (best == result_.palette.size() ||
+                 distance2(result_.palette[i], color) < distance2(result_.palette[best], color)))
+                best = i;
+        return static_cast<std::uint8_t>(best);
+    }
 
     /// Puts the ends of edges too short and the corners of triangles too flat to be cut or
     /// folded into one area.
@@ -291,7 +345,6 @@ std::vector<Rgb8> choose_palette(const std::vector<Rgb8>& colors) {
             palette.push_back(mean);
     }
     if (palette.empty()) return {Rgb8{}};
-    drop_seams(cells, palette);
     for (int round = 0; round < kRefinements; ++round) {
         const std::vector<ColorCell> group = group_by_nearest(cells, palette);
         for (std::size_t i = 0; i < palette.size(); ++i)
