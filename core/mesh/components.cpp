@@ -6,7 +6,6 @@
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/error.h"
-#include "core/mesh/edge_table.h"
 
 namespace fretwork {
 namespace {
@@ -19,8 +18,7 @@ void check_indices(const TriangleMesh& mesh) {
                                    ", but the mesh has " + std::to_string(mesh.positions_mm.size()) + " vertices");
 }
 
-void join_over_edges(const TriangleMesh& mesh, DisjointSets& sets, const RunControl& run) {
-    const EdgeTable edges(mesh, run);
+void join_over_edges(const EdgeTable& edges, DisjointSets& sets) {
     for (std::size_t e = 0; e < edges.size(); ++e)
         for (const HalfEdge h : edges.half_edges(e)) sets.unite(edges.half_edges(e)[0] / 3, h / 3);
 }
@@ -35,15 +33,7 @@ void join_over_vertices(const TriangleMesh& mesh, DisjointSets& sets) {
         }
 }
 
-}  // namespace
-
-MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by, const RunControl& run) {
-    check_indices(mesh);
-    DisjointSets sets(mesh.triangles.size());
-    if (by == ConnectedBy::kEdge)
-        join_over_edges(mesh, sets, run);
-    else
-        join_over_vertices(mesh, sets);
+MeshComponents number_components(const TriangleMesh& mesh, DisjointSets& sets) {
     MeshComponents components;
     components.of_triangle.resize(mesh.triangles.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -51,6 +41,22 @@ MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by, const R
         components.of_triangle[t] = lowest == t ? components.count++ : components.of_triangle[lowest];
     }
     return components;
+}
+
+}  // namespace
+
+MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by, const RunControl& run) {
+    check_indices(mesh);
+    if (by == ConnectedBy::kEdge) return find_components(mesh, EdgeTable(mesh, run));
+    DisjointSets sets(mesh.triangles.size());
+    join_over_vertices(mesh, sets);
+    return number_components(mesh, sets);
+}
+
+MeshComponents find_components(const TriangleMesh& mesh, const EdgeTable& edges) {
+    DisjointSets sets(mesh.triangles.size());
+    join_over_edges(edges, sets);
+    return number_components(mesh, sets);
 }
 
 std::vector<ComponentMesh> split_components(const TriangleMesh& mesh, const MeshComponents& components) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/run_control.h"
+#include "core/mesh/edge_table.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace fretwork {
@@ -24,6 +25,9 @@ struct MeshComponents {
 /// \throws Cancelled     `run` asked to stop.
 MeshComponents find_components(const TriangleMesh& mesh, ConnectedBy by = ConnectedBy::kEdge,
                                const RunControl& run = {});
+
+/// Over shared edges, where these are known.
+MeshComponents find_components(const TriangleMesh& mesh, const EdgeTable& edges);
 
 struct ComponentMesh {
     TriangleMesh mesh;

@@ -83,7 +83,7 @@ MeshReport report_mesh(const TriangleMesh& mesh, CountSelfIntersections count, c
     count_edges(mesh, edges, report);
     run.throw_if_stopped();
     report.non_manifold_vertices = count_split_vertices(mesh, edges);
-    report.components = find_components(mesh, ConnectedBy::kEdge, run).count;
+    report.components = find_components(mesh, edges).count;
     run.throw_if_stopped();
     report.duplicate_triangles = count_duplicates(mesh);
     if (count == CountSelfIntersections::kYes) {

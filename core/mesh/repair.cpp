@@ -5,7 +5,6 @@
 
 #include "core/base/error.h"
 #include "core/mesh/check_mesh.h"
-#include "core/mesh/components.h"
 #include "core/mesh/repair_steps.h"
 
 namespace fretwork {
@@ -19,19 +18,6 @@ double longest_side(const TriangleMesh& mesh) {
             high = high.cwiseMax(mesh.positions_mm[v]);
         }
     return (high - low).maxCoeff();
-}
-
-void count_what_is_left(const TriangleMesh& mesh, RepairCounts& counts, const RunControl& run) {
-    const MeshComponents components = find_components(mesh, ConnectedBy::kEdge, run);
-    std::vector<std::uint8_t> open(components.count, 0);
-    const EdgeTable edges(mesh, run);
-    for (std::size_t e = 0; e < edges.size(); ++e)
-        if (edges.half_edges(e).size() == 1) {
-            ++counts.border_edges;
-            open[components.of_triangle[edges.half_edges(e)[0] / 3]] = 1;
-        }
-    counts.components = components.count;
-    for (const std::uint8_t is_open : open) counts.open_components += is_open;
 }
 
 std::string counted(std::size_t count, const char* one, const char* many) {
@@ -65,8 +51,7 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const RepairSettings& setting
     run.checkpoint("repair", 0.7);
     repair::separate_sheets(draft, std::move(mates));
     run.checkpoint("repair", 0.8);
-    repair::turn_outward(draft);
-    count_what_is_left(draft.mesh, draft.counts, run);
+    repair::turn_outward(draft, EdgeTable(draft.mesh, run));
     run.checkpoint("repair", 1.0);
     return {std::move(draft.mesh), std::move(draft.source), draft.counts};
 }

@@ -20,7 +20,8 @@ struct Piece {
     std::uint32_t outermost = 0;  ///< the piece that holds it and is held by none; itself where there is none
 };
 
-std::vector<Piece> measure_pieces(const TriangleMesh& mesh, const MeshComponents& components, const RunControl& run) {
+std::vector<Piece> measure_pieces(const TriangleMesh& mesh, const MeshComponents& components, const EdgeTable& edges,
+                                  RepairCounts& counts, const RunControl& run) {
     std::vector<Piece> pieces(components.count);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         if (t % kOften == 0) run.throw_if_stopped();
@@ -37,9 +38,13 @@ std::vector<Piece> measure_pieces(const TriangleMesh& mesh, const MeshComponents
                 .dot((mesh.positions_mm[corners[1]] - origin).cross(mesh.positions_mm[corners[2]] - origin)) /
             6.0;
     }
-    const EdgeTable edges(mesh, run);
     for (std::size_t e = 0; e < edges.size(); ++e)
-        if (edges.half_edges(e).size() == 1) pieces[components.of_triangle[edges.half_edges(e)[0] / 3]].closed = false;
+        if (edges.half_edges(e).size() == 1) {
+            pieces[components.of_triangle[edges.half_edges(e)[0] / 3]].closed = false;
+            ++counts.border_edges;
+        }
+    counts.components = components.count;
+    for (const Piece& piece : pieces) counts.open_components += piece.closed ? 0 : 1;
     return pieces;
 }
 
@@ -107,9 +112,9 @@ void find_outermost(const TriangleMesh& mesh, const MeshComponents& components, 
 
 }  // namespace
 
-void turn_outward(Draft& draft) {
-    const MeshComponents components = find_components(draft.mesh, ConnectedBy::kEdge, draft.run);
-    std::vector<Piece> pieces = measure_pieces(draft.mesh, components, draft.run);
+void turn_outward(Draft& draft, const EdgeTable& edges) {
+    const MeshComponents components = find_components(draft.mesh, edges);
+    std::vector<Piece> pieces = measure_pieces(draft.mesh, components, edges, draft.counts, draft.run);
     find_outermost(draft.mesh, components, pieces, draft.run);
     for (const Piece& piece : pieces) {
         if (!piece.closed || !(pieces[piece.outermost].volume_mm3 < 0.0)) continue;

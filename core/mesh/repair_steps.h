@@ -46,8 +46,9 @@ std::vector<HalfEdge> glue_half_edges(Draft& draft);
 /// Gives each fan of glued triangles its own vertex, and each glued pair its own edge.
 void separate_sheets(Draft& draft, std::vector<HalfEdge> mates);
 
-/// Turns closed pieces outward; see repair.h for nested ones.
-void turn_outward(Draft& draft);
+/// Turns closed pieces outward; see repair.h for nested ones. Then counts the pieces and what is open.
+/// \param edges  of the mesh as it is; turning a triangle changes which of its half-edges is which, but not the edges
+void turn_outward(Draft& draft, const EdgeTable& edges);
 
 /// Renumbers vertices: `target[v]` is the vertex that v becomes; unnamed ones go.
 void remap_vertices(Draft& draft, const std::vector<std::uint32_t>& target);
