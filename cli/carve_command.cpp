@@ -93,8 +93,13 @@ int check(const CarveOptions& options, Interrupt& interrupt) {
     return kDone;
 }
 
-std::string preview_png(const CarveResult& result, const RunControl& run) {
-    return write_png(render(result.carved.mesh, result.carved.triangle_colors, {}, run));
+std::string preview_png(const CarveResult& result, Preset preset, const RunControl& run) {
+    RenderSettings picture;
+    if (preset == Preset::kDraft) {
+        picture.width = picture.height = 800;
+        picture.samples_per_axis = 2;
+    }
+    return write_png(render(result.carved.mesh, result.carved.triangle_colors, picture, run));
 }
 
 int carve_command(const CarveOptions& options, Interrupt& interrupt) {
@@ -112,7 +117,8 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
         naming_model(input, [&] { return carve(input, settings, limits, run.slice(0.02, 0.95)); });
 
     const std::string bytes = carved_bytes(result, settings, input, format, run.slice(0.95, 0.98));
-    if (!options.preview.empty()) put(options.preview, preview_png(result, run.slice(0.98, 0.995)), interrupt);
+    if (!options.preview.empty())
+        put(options.preview, preview_png(result, settings.synthesis.preset, run.slice(0.98, 0.995)), interrupt);
     if (!options.summary.empty()) put(options.summary, report_json(result.report), interrupt);
     if (!options.dependencies.empty()) {
         std::vector<std::string> inputs = files_read(options.pattern, settings);

@@ -9,9 +9,9 @@
 
 namespace fretwork {
 
-/// Memory for `bytes` bytes. Large blocks are laid on large pages where the system has them, which makes both the
-/// first touch and random access cheaper. Release with `release_bulk` and the same number.
-/// \throws std::bad_alloc
+/// Memory for `bytes` bytes, from the start of a cache line on. Large blocks are laid on large pages where the system
+/// has them, which makes both the first touch and random access cheaper. Release with `release_bulk` and the same
+/// number. \throws std::bad_alloc
 [[nodiscard]] void* allocate_bulk(std::size_t bytes);
 void release_bulk(void* block, std::size_t bytes) noexcept;
 

@@ -122,6 +122,7 @@ GaussianStack build_gaussian_stack(const Exemplar& exemplar, const GaussianStack
     const Plane sharp = to_planes(exemplar, settings.feature_weight);
     // Beyond a third of the picture a wider kernel changes nothing but the time it takes.
     const double widest = std::max(exemplar.width, exemplar.height) / 3.0;
+    const double flat = settings.flat_contrast * contrast_of(pack(sharp));
     for (int l = 0; l < settings.levels; ++l) {
         const double footprint = std::ldexp(settings.pixels_per_voxel, l);
         const double sigma = std::min(widest, 0.35 * std::sqrt(std::max(0.0, footprint * footprint - 1.0)));
@@ -134,6 +135,7 @@ GaussianStack build_gaussian_stack(const Exemplar& exemplar, const GaussianStack
                 pack(blur_and_transpose(half, exemplar.height, exemplar.width, kernel, exemplar.tileable)));
         }
         stack.contrast.push_back(contrast_of(stack.levels.back()));
+        if (settings.flat_contrast > 0.0 && stack.contrast.back() <= flat) break;
     }
     return stack;
 }

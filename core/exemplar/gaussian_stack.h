@@ -21,9 +21,11 @@ struct GaussianStack {
 };
 
 struct GaussianStackSettings {
-    int levels = 1;                 ///< at least 1
+    int levels = 1;                 ///< at most these, at least 1
     double pixels_per_voxel = 1.0;  ///< footprint on level l: pixels_per_voxel * 2^l
     double feature_weight = 1.0;    ///< of the squared differences of f against one colour channel, in [0, 1]
+    /// Levels beyond the first one whose contrast is at most this share of the picture's own are not made; 0: all are.
+    double flat_contrast = 0.0;
 };
 
 /// Blurs with sigma = 0.35 sqrt(footprint^2 - 1) pixels; around the border by wrapping where the

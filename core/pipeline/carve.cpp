@@ -39,8 +39,9 @@ std::vector<SettingAssignment> resolved_document(const Settings& settings, const
     full.shell.side = resolved.solidify.side;
     full.shell.voxel_mm.reset();
     full.shell.resolution = resolved.voxelize.resolution;
+    full.shell.halvings = resolved.voxelize.halvings;
     full.exemplar.width_mm = resolved.exemplar_width_mm / settings.synthesis.scale;
-    full.synthesis.levels = resolved.pyramid_levels;
+    full.synthesis.levels = resolved.pyramid_levels + resolved.voxelize.halvings;
     full.structure.youngs_modulus_mpa = resolved.material.youngs_modulus_mpa;
     full.structure.poissons_ratio = resolved.material.poissons_ratio;
     full.structure.density_kg_m3 = resolved.material.density_kg_m3;
@@ -65,7 +66,8 @@ RunReport report_of_request(const CarveInput& input, const Settings& settings) {
 
 void note_resolved(const Settings& settings, const ResolvedSettings& resolved, RunReport& report) {
     report.settings = resolved_document(settings, resolved);
-    report.shell.resolution = resolved.voxelize.resolution;
+    report.shell.resolution =
+        (resolved.voxelize.resolution + (1 << resolved.voxelize.halvings) - 1) >> resolved.voxelize.halvings;
     report.shell.voxel_mm = resolved.voxel_mm;
     report.shell.thickness_mm = resolved.solidify.thickness_mm;
     report.pattern.exemplar_width_mm = resolved.exemplar_width_mm;
@@ -139,8 +141,9 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     report.input.mesh = surface.found;
     std::ranges::copy(surface.warnings, std::back_inserter(report.warnings));
     result.surface = std::move(surface.mesh);
-    const ResolvedSettings resolved = resolve_settings(settings, {longest_side(result.surface), surface.open},
-                                                       exemplar_facts(input.exemplar, input.exemplar_width_mm));
+    const ResolvedSettings resolved =
+        resolve_settings(settings, {longest_side(result.surface), surface.open, surface.found.area_mm2},
+                         exemplar_facts(input.exemplar, input.exemplar_width_mm));
     note_resolved(settings, resolved, report);
     check_memory(result.surface, resolved, limits.max_memory_bytes);
     const Settings local = with_triangles_of(surface.source_triangles, input.mesh.triangles.size(), settings);
@@ -203,8 +206,9 @@ RunReport check_carve(const CarveInput& input, const Settings& settings, const R
     const PreparedSurface surface = prepare_surface(input.mesh, settings.input, run.slice(0.0, 0.8));
     report.input.mesh = surface.found;
     std::ranges::copy(surface.warnings, std::back_inserter(report.warnings));
-    const ResolvedSettings resolved = resolve_settings(settings, {longest_side(surface.mesh), surface.open},
-                                                       exemplar_facts(input.exemplar, input.exemplar_width_mm));
+    const ResolvedSettings resolved =
+        resolve_settings(settings, {longest_side(surface.mesh), surface.open, surface.found.area_mm2},
+                         exemplar_facts(input.exemplar, input.exemplar_width_mm));
     note_resolved(settings, resolved, report);
     check_memory(surface.mesh, resolved, limits.max_memory_bytes);
     report.peak_memory_bytes = estimated_peak_bytes(surface.mesh, resolved);
@@ -212,6 +216,7 @@ RunReport check_carve(const CarveInput& input, const Settings& settings, const R
     // A coarse shell is enough to see whether each region holds a part of the surface.
     VoxelizeSettings coarse = resolved.voxelize;
     coarse.resolution = std::min(coarse.resolution, 64);
+    coarse.halvings = 0;
     const SurfaceVoxels shell = voxelize(surface.mesh, coarse, run.slice(0.8, 0.95));
     report.shell.components = component_count(shell);
     const Settings local = with_triangles_of(surface.source_triangles, input.mesh.triangles.size(), settings);

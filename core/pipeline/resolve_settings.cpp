@@ -38,6 +38,38 @@ int choose_resolution(const ShellOptions& shell, double longest_side_mm) {
     return resolution_for(longest_side_mm, *shell.voxel_mm);
 }
 
+// A draft works on the finest level of the full run's grid that has few enough voxels to answer while one waits.
+int choose_halvings(const Settings& settings, const SurfaceFacts& surface, const ResolvedSettings& r) {
+    if (settings.shell.halvings) return *settings.shell.halvings;
+    if (settings.synthesis.preset != Preset::kDraft) return 0;
+    constexpr double most_faces = 30000.0;  // of cells, as many as cover the surface
+    constexpr int least_resolution = 48;
+    int halvings = 0;
+    double voxel_mm = r.voxel_mm;
+    while (surface.area_mm2 > most_faces * voxel_mm * voxel_mm &&
+           r.voxelize.resolution >> (halvings + 1) >= least_resolution) {
+        ++halvings;
+        voxel_mm *= 2.0;
+    }
+    return halvings;
+}
+
+// Goes over to the coarser grid. What the settings ask for was checked against the grid that they name; here widths
+// that the coarser one cannot hold grow to those that it can.
+void coarsen(int halvings, ResolvedSettings& r) {
+    r.voxelize.halvings = halvings;
+    r.synthesis.skipped_levels = halvings;
+    r.pyramid_levels = std::max(1, r.pyramid_levels - halvings);
+    const double factor = std::ldexp(1.0, halvings);
+    r.voxel_mm *= factor;
+    r.synthesis.pixels_per_voxel *= factor;
+    r.reinforce.pattern_radius_voxels = std::max(r.reinforce.pattern_radius_voxels / factor, kLeastRadiusVoxels);
+    r.solidify.thickness_mm = std::max(r.solidify.thickness_mm, kLeastWallVoxels * r.voxel_mm);
+    r.reinforce.thickness_mm = r.solidify.thickness_mm;
+    r.enlarge.min_feature_mm = std::max(r.enlarge.min_feature_mm, kLeastFeatureVoxels * r.voxel_mm);
+    r.enlarge.min_hole_mm = std::max(r.enlarge.min_hole_mm, kLeastFeatureVoxels * r.voxel_mm);
+}
+
 double wall_thickness(const Settings& settings, const ResolvedSettings& r) {
     if (!settings.shell.thickness_mm)
         return std::max({0.02 * r.longest_side_mm, 2.5 * r.voxel_mm, 3.0 * settings.fabrication.nozzle_mm});
@@ -208,6 +240,7 @@ ResolvedSettings resolve_settings(const Settings& settings, const SurfaceFacts& 
 
     r.material = chosen_material(settings.structure);
     r.reinforce = reinforce_settings(settings, r, exemplar.half_stroke_px / pixels_per_voxel * r.voxel_mm);
+    if (const int halvings = choose_halvings(settings, surface, r); halvings > 0) coarsen(halvings, r);
     return r;
 }
 

@@ -20,7 +20,7 @@ struct ResolvedSettings {
     double voxel_mm = 0.0;
     double exemplar_width_mm = 0.0;
     int pyramid_levels = 1;
-    VoxelizeSettings voxelize;
+    VoxelizeSettings voxelize;  ///< with `halvings`: all lengths in voxels are in voxels of the coarser grid
     SynthesisSettings synthesis;
     Material material;
     ReinforceSettings reinforce;
@@ -32,7 +32,8 @@ struct ResolvedSettings {
 /// What a run's numbers depend on besides the settings: the scaled model ...
 struct SurfaceFacts {
     double longest_side_mm = 0.0;
-    bool open = false;  ///< has border edges
+    bool open = false;      ///< has border edges
+    double area_mm2 = 0.0;  ///< of the surface; decides how coarse a draft must be
 };
 
 /// ... and the exemplar.

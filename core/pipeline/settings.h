@@ -15,7 +15,7 @@ namespace fretwork {
 
 /// Starting values for many keys at once; keys set by name win over the preset.
 enum class Preset {
-    kDraft,    ///< coarse voxels and few passes, for previews
+    kDraft,    ///< the coarse levels of the run that the same settings make without it, in seconds
     kDefault,  ///< the settings documented key by key
     kFine,     ///< 512 voxels along the longest side and a longer search
     kPaper,    ///< the paper's parameters and rules as printed
@@ -69,6 +69,8 @@ struct ShellOptions {
     std::optional<WallSide> side;
     std::optional<double> voxel_mm;
     std::optional<int> resolution;  ///< voxels along the longest side
+    /// The run uses the grid's cells of 2^halvings voxels a side: the coarse part of the run without it.
+    std::optional<int> halvings;
 };
 
 struct SynthesisOptions {

@@ -7,11 +7,10 @@ void apply_preset(Settings& settings, Preset preset) {
     settings.synthesis.preset = preset;
     switch (preset) {
         case Preset::kDraft:
-            settings.synthesis.search = synthesis_settings(SynthesisPreset::kDraft);
-            settings.shell.resolution = 128;
-            settings.structure.steps.samples = 500;
-            settings.structure.steps.max_iterations = 6;
-            settings.fabrication.simplify_voxels = 0.2;
+            // The search stays that of the full run, whose coarse levels these are (shell.halvings).
+            settings.structure.steps.samples = 250;
+            settings.structure.steps.max_iterations = 2;
+            settings.fabrication.simplify_voxels = 0.0;
             break;
         case Preset::kDefault:
             break;

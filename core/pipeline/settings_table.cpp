@@ -220,6 +220,10 @@ void add_shell(std::vector<SettingInfo>& t) {
                     "Side of a voxel. Instead of shell.resolution.", "from shell.resolution"));
     t.push_back(row("shell.resolution", FIELD(shell.resolution), "voxels", between(8, 2048),
                     "Voxels along the longest side.", "256, or from shell.voxel_mm"));
+    t.push_back(row("shell.halvings", FIELD(shell.halvings), "1", between(0, 6),
+                    "Halvings of that resolution: the run stops on a coarser level of the grid and shows the large "
+                    "features of the full one.",
+                    "0; in a draft as many as it takes to answer in about 2 s"));
 }
 
 void add_synthesis(std::vector<SettingInfo>& t) {

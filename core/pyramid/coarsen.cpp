@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 
 #include "core/base/parallel.h"
@@ -125,39 +127,78 @@ void join_layers(const std::vector<CoarseLayer>& layers, PyramidLevel& fine, Pyr
     });
 }
 
-void average_children(const WeightedLevel& fine, WeightedLevel& coarse) {
-    // What is merely touched by the surface has no area but still a place.
-    constexpr float kLeastWeight = 1e-3F;
-    // Below this share of the weight, the sum of the normals says nothing about a side.
+// Sums over the same surface cut in other ways differ in their last bits; rounded well above them they are the same.
+Vec3f rounded(const Vec3f& v, float step) {
+    return {step * std::round(v.x() / step), step * std::round(v.y() / step), step * std::round(v.z() / step)};
+}
+
+void average_children(const WeightedLevel& fine, WeightedLevel& coarse, float voxels_per_cell) {
+    // Below this share of the area, the sum of the areas says nothing about a side.
     constexpr float kCancelled = 1e-2F;
+    constexpr float kPositionStep = 0x1p-12F;  // in cells
+    constexpr float kNormalStep = 0x1p-14F;
     PyramidLevel& level = coarse.level;
     level.positions.resize(level.size());
     level.normals.resize(level.size());
     coarse.area_voxels2.resize(level.size());
+    coarse.facing.resize(level.size());
+    coarse.centroids.resize(level.size());
     parallel_for(level.size(), kGrain, [&](std::size_t p) {
-        Vec3f position = Vec3f::Zero();
-        Vec3f normal = Vec3f::Zero();
-        float weight = 0.0F;
+        Vec3f moment = Vec3f::Zero(), place = Vec3f::Zero();
+        Vec3f facing = Vec3f::Zero(), normal = Vec3f::Zero();
         float area = 0.0F;
         VoxelIndex largest = level.children[level.first_child[p]];
         for (std::uint32_t i = level.first_child[p]; i < level.first_child[p + 1]; ++i) {
             const VoxelIndex c = level.children[i];
-            const float w = std::max(kLeastWeight, fine.area_voxels2[c]);
-            position += w * fine.level.positions[c];
-            normal += w * fine.level.normals[c];
-            weight += w;
+            moment += fine.area_voxels2[c] * fine.centroids[c];
+            place += fine.centroids[c];
+            facing += fine.facing[c];
+            normal += fine.level.normals[c];
             area += fine.area_voxels2[c];
             if (fine.area_voxels2[c] > fine.area_voxels2[largest]) largest = c;
         }
-        level.positions[p] = position / weight;
-        level.normals[p] = normal.norm() > kCancelled * weight ? normal.normalized() : fine.level.normals[largest];
+        // What is merely touched by the surface has no area but still a place and a side.
+        const auto children = static_cast<float>(level.first_child[p + 1] - level.first_child[p]);
+        coarse.centroids[p] = area > 0.0F ? moment / area : place / children;
+        level.positions[p] = rounded(coarse.centroids[p], kPositionStep * voxels_per_cell);
+        const Vec3f sum = area > 0.0F ? facing : normal;
+        const float least = kCancelled * (area > 0.0F ? area : children);
+        const Vec3f mean = sum.norm() > least ? sum.normalized() : fine.level.normals[largest];
+        level.normals[p] = rounded(mean, kNormalStep).normalized();
         coarse.area_voxels2[p] = area;
+        coarse.facing[p] = facing;
     });
 }
 
 float length_between(const VoxelCoord& a, const VoxelCoord& b) {
     constexpr std::array<float, 4> length = {0.0F, 1.0F, 1.41421356F, 1.73205081F};
     return length[static_cast<std::size_t>((a[0] != b[0]) + (a[1] != b[1]) + (a[2] != b[2]))];
+}
+
+// The parents that children of p are linked to, ascending. A cell tells the parent as long as none holds two of them.
+void list_linked_parents(const PyramidLevel& fine, const PyramidLevel& coarse, VoxelIndex p,
+                         std::vector<VoxelIndex>& row) {
+    std::array<VoxelIndex, 27> in_cell;
+    CellSet seen = 0;
+    bool several = false;
+    row.clear();
+    for (std::uint32_t i = coarse.first_child[p]; i < coarse.first_child[p + 1]; ++i)
+        for (const VoxelIndex w : fine.adjacency.of(coarse.children[i])) {
+            const VoxelIndex q = fine.parent[w];
+            if (q == p) continue;
+            const auto code = static_cast<std::size_t>(touching_code(coarse.coords[p], coarse.coords[q]));
+            if ((seen >> code & 1u) != 0 && in_cell[code] != q) {
+                several = true;
+                row.push_back(q);
+            } else {
+                seen |= CellSet{1} << code;
+                in_cell[code] = q;
+            }
+        }
+    for (; seen != 0; seen &= seen - 1) row.push_back(in_cell[static_cast<std::size_t>(std::countr_zero(seen))]);
+    if (!several) return;
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
 }
 
 Adjacency link_parents(const PyramidLevel& fine, const PyramidLevel& coarse, const RunControl& run) {
@@ -169,13 +210,7 @@ Adjacency link_parents(const PyramidLevel& fine, const PyramidLevel& coarse, con
         std::vector<VoxelIndex>& all = chunks[begin / kGrain];
         std::vector<VoxelIndex> row;
         for (std::size_t p = begin; p < end; ++p) {
-            row.clear();
-            for (std::uint32_t i = coarse.first_child[p]; i < coarse.first_child[p + 1]; ++i)
-                for (const VoxelIndex w : fine.adjacency.of(coarse.children[i]))
-                    if (fine.parent[w] != p && (row.empty() || row.back() != fine.parent[w]))
-                        row.push_back(fine.parent[w]);
-            std::sort(row.begin(), row.end());
-            row.erase(std::unique(row.begin(), row.end()), row.end());
+            list_linked_parents(fine, coarse, static_cast<VoxelIndex>(p), row);
             all.insert(all.end(), row.begin(), row.end());
             links.first[p + 1] = static_cast<std::uint32_t>(row.size());
         }
@@ -195,10 +230,10 @@ Adjacency link_parents(const PyramidLevel& fine, const PyramidLevel& coarse, con
 
 }  // namespace
 
-WeightedLevel coarsen(WeightedLevel& fine, const RunControl& run) {
+WeightedLevel coarsen(WeightedLevel& fine, int level_index, const RunControl& run) {
     WeightedLevel coarse;
     join_layers(group_layers(fine.level, run), fine.level, coarse.level);
-    average_children(fine, coarse);
+    average_children(fine, coarse, std::ldexp(1.0F, level_index));
     const Adjacency of_children = link_parents(fine.level, coarse.level, run);
     const CellRows rows(extent_of(coarse.level.coords), coarse.level.coords);
     coarse.level.adjacency =

@@ -6,10 +6,6 @@
 
 namespace fretwork {
 
-/// A step between two entries whose normals have a cosine below this is not taken. Steps over a right-angled
-/// edge are, with room for skewed mean normals; steps from one side of a wall to the other are not.
-inline constexpr float kTurningRoundCosine = -0.2F;
-
 /// Needs coords, positions, normals and adjacency of `level`.
 ///
 /// Offsets  where the two normals and those on the way between them are alike, w - v is turned into v's
@@ -18,6 +14,7 @@ inline constexpr float kTurningRoundCosine = -0.2F;
 ///          rounded edge, the way over the entry between v and w that bends least is unfolded in two steps, and
 ///          the second one carried back to v by the rotation that takes one normal to the other.
 /// Cost     linear in the pairs, about 39 per entry.
-Neighborhoods find_neighborhoods(const PyramidLevel& level, const RunControl& run);
+/// \param level_index  0 for the finest level, whose voxels are the unit of the positions
+Neighborhoods find_neighborhoods(const PyramidLevel& level, int level_index, const RunControl& run);
 
 }  // namespace fretwork

@@ -18,10 +18,16 @@ WeightedLevel finest_level(const SurfaceVoxels& shell) {
     finest.level.adjacency = shell.adjacency;
     finest.level.positions.resize(shell.size());
     finest.area_voxels2.resize(shell.size());
+    finest.facing.resize(shell.size());
+    finest.centroids = shell.centroids_voxels;
     const double voxel = shell.grid.voxel_mm;
     parallel_for(shell.size(), 8192, [&](std::size_t v) {
         finest.level.positions[v] = ((shell.points_mm[v] - shell.grid.origin_mm) / voxel).cast<float>();
-        finest.area_voxels2[v] = static_cast<float>(static_cast<double>(shell.area_mm2[v]) / (voxel * voxel));
+        const auto in_voxels = [&](float mm2) {
+            return static_cast<float>(static_cast<double>(mm2) / (voxel * voxel));
+        };
+        finest.area_voxels2[v] = in_voxels(shell.area_mm2[v]);
+        finest.facing[v] = in_voxels(shell.facing_area_mm2[v]) * shell.normals[v];
     });
     return finest;
 }
@@ -37,12 +43,12 @@ VoxelPyramid build_pyramid(const SurfaceVoxels& shell, int levels, const RunCont
     // remains after it.
     double left = 1.0;
     for (int made = 1;; ++made) {
-        current.level.neighborhoods = find_neighborhoods(current.level, run);
+        current.level.neighborhoods = find_neighborhoods(current.level, made - 1, run);
         left *= 0.25;
         run.checkpoint("pyramid", 1.0 - left);
         const bool single_cells = current.level.adjacency.neighbor.empty();
         if (made == levels || single_cells) break;
-        WeightedLevel coarser = coarsen(current, run);
+        WeightedLevel coarser = coarsen(current, made, run);
         pyramid.levels.push_back(std::move(current.level));
         current = std::move(coarser);
     }

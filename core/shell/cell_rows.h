@@ -47,6 +47,20 @@ class CellRows {
         }
     }
 
+    /// The entries in the row of cells with these y and z; none where there is no such row.
+    struct Row {
+        std::uint32_t begin = 0;
+        std::uint32_t end = 0;
+    };
+    [[nodiscard]] Row row(int y, int z) const {
+        if (y < 0 || y >= extent_[1] || z < 0 || z >= extent_[2]) return {};
+        const std::size_t r =
+            static_cast<std::size_t>(z) * static_cast<std::size_t>(extent_[1]) + static_cast<std::size_t>(y);
+        return {row_first_[r], row_first_[r + 1]};
+    }
+    /// x of the cell of an entry.
+    [[nodiscard]] int x_of(VoxelIndex v) const { return x_[v]; }
+
     /// Is the cell of `v` listed more than once?
     [[nodiscard]] bool shares_cell(VoxelIndex v) const {
         return (v > 0 && same_cell(coords_[v - 1], coords_[v])) ||

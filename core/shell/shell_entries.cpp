@@ -5,8 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
-#include "core/shell/components.h"
 #include "core/shell/sheets.h"
 
 namespace fretwork {
@@ -16,8 +16,10 @@ struct Entry {
     VoxelCoord coord;
     Vec3f normal;
     Vec3 point;  // grid coordinates
+    Vec3f centroid;
     std::uint32_t triangle;
     float area;
+    float facing_area;
     std::uint32_t first_triangle;  // position in Layer::triangles
 };
 
@@ -124,19 +126,25 @@ class LayerBuilder {
         entry.coord = coord;
         entry.first_triangle = static_cast<std::uint32_t>(layer_.triangles.size());
         double area = 0.0;
+        Vec3 moment = Vec3::Zero();
+        Vec3 facing = Vec3::Zero();
         const Patch* closest = patches.front();
         for (const Patch* patch : patches) {
             layer_.triangles.push_back(patch->triangle);
             area += static_cast<double>(patch->area);
+            moment += static_cast<double>(patch->area) * patch->centroid.cast<double>();
+            facing += static_cast<double>(patch->area) * mesh_.normals[patch->triangle];
             if (patch->closest.squaredNorm() < closest->closest.squaredNorm()) closest = patch;
         }
         entry.normal = mean_normal(patches, mesh_).cast<float>();
         entry.area = static_cast<float>(area);
+        entry.facing_area = static_cast<float>(facing.norm());
         entry.triangle = closest->triangle;
         // The patch holds the point in single precision; put it back into the plane of its triangle.
         entry.point = center + closest->closest.cast<double>();
         const Vec3& normal = mesh_.normals[closest->triangle];
         entry.point -= normal * normal.dot(entry.point - mesh_.points[mesh_.triangles[closest->triangle][0]]);
+        entry.centroid = area > 0.0 ? Vec3f((center + moment / area).cast<float>()) : Vec3f(entry.point.cast<float>());
         layer_.entries.push_back(entry);
     }
 
@@ -158,6 +166,8 @@ void resize(SurfaceVoxels& shell, std::size_t count) {
     shell.points_mm.resize(count);
     shell.triangles.resize(count);
     shell.area_mm2.resize(count);
+    shell.facing_area_mm2.resize(count);
+    shell.centroids_voxels.resize(count);
 }
 
 void copy_layer(const Layer& layer, std::size_t first_entry, std::size_t first_triangle, SurfaceVoxels& shell,
@@ -171,6 +181,8 @@ void copy_layer(const Layer& layer, std::size_t first_entry, std::size_t first_t
         shell.points_mm[v] = shell.grid.origin_mm + voxel * entry.point;
         shell.triangles[v] = entry.triangle;
         shell.area_mm2[v] = static_cast<float>(voxel * voxel * static_cast<double>(entry.area));
+        shell.facing_area_mm2[v] = static_cast<float>(voxel * voxel * static_cast<double>(entry.facing_area));
+        shell.centroids_voxels[v] = entry.centroid;
         triangles.first[v] = static_cast<std::uint32_t>(first_triangle + entry.first_triangle);
     }
     std::copy(layer.triangles.begin(), layer.triangles.end(),
@@ -228,18 +240,31 @@ void fill_missing_normals(const Adjacency& links, std::vector<Vec3f>& normals) {
 }
 
 std::vector<std::uint32_t> components_by_lowest_triangle(const Adjacency& adjacency, const EntryTriangles& triangles) {
-    ShellComponents components = connected_components(adjacency);
-    std::vector<std::uint32_t> lowest(components.count(), 0xffffffffu);
-    for (VoxelIndex v = 0; v < components.of.size(); ++v)
-        lowest[components.of[v]] = std::min(lowest[components.of[v]], triangles.of(v).front());
-    std::vector<std::uint32_t> by_triangle(components.count());
+    const std::size_t count = adjacency.first.size() - 1;
+    // Links to earlier entries lie close by in memory, which a flood does not.
+    DisjointSets sets(count);
+    for (VoxelIndex v = 0; v < count; ++v)
+        for (const VoxelIndex w : adjacency.of(v)) {
+            if (w > v) break;  // seen from there
+            sets.unite(v, w);
+        }
+    constexpr std::uint32_t none = 0xffffffffu;
+    std::vector<std::uint32_t> component(count);
+    std::vector<std::uint32_t> lowest;  // triangle of each component
+    for (VoxelIndex v = 0; v < count; ++v) {
+        const std::uint32_t root = sets.find(v);  // an earlier entry, or v itself
+        if (root == v) lowest.push_back(none);
+        component[v] = root == v ? static_cast<std::uint32_t>(lowest.size() - 1) : component[root];
+        lowest[component[v]] = std::min(lowest[component[v]], triangles.of(v).front());
+    }
+    std::vector<std::uint32_t> by_triangle(lowest.size());
     std::iota(by_triangle.begin(), by_triangle.end(), 0u);
     std::sort(by_triangle.begin(), by_triangle.end(),
               [&](std::uint32_t a, std::uint32_t b) { return lowest[a] < lowest[b]; });
-    std::vector<std::uint32_t> number(components.count());
+    std::vector<std::uint32_t> number(lowest.size());
     for (std::uint32_t rank = 0; rank < number.size(); ++rank) number[by_triangle[rank]] = rank;
-    for (std::uint32_t& c : components.of) c = number[c];
-    return std::move(components.of);
+    for (std::uint32_t& c : component) c = number[c];
+    return component;
 }
 
 }  // namespace fretwork

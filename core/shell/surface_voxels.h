@@ -49,6 +49,8 @@ struct SurfaceVoxels {
     std::vector<Vec3> points_mm;            ///< point of this sheet closest to the cell's centre
     std::vector<std::uint32_t> triangles;   ///< triangle of the mesh that holds the point
     std::vector<float> area_mm2;            ///< area of the enclosed surface
+    std::vector<float> facing_area_mm2;     ///< of its projection along the normal: the length of the sum of its areas
+    std::vector<Vec3f> centroids_voxels;    ///< its centre of area from the grid's origin; the point without an area
     std::vector<std::uint32_t> components;  ///< connected component of the mesh, 0, 1, ...
     /// G_surface: cells that touch (by face, edge or corner) and are joined by the surface itself.
     Adjacency adjacency;

@@ -97,13 +97,24 @@ Vec3 as_vector(const Point& p) {
     return {p[0], p[1], p[2]};
 }
 
-double polygon_area(const Polygon& polygon, const Vec3& normal) {
+struct PolygonArea {
+    double area = 0.0;
+    Vec3 centroid = Vec3::Zero();  // where there is an area
+};
+
+PolygonArea measure(const Polygon& polygon, const Vec3& normal) {
     const Vec3 origin = as_vector(polygon.corner[0]);
-    Vec3 twice = Vec3::Zero();
-    for (int i = 2; i < polygon.size; ++i)
-        twice += (as_vector(polygon.corner[static_cast<std::size_t>(i - 1)]) - origin)
-                     .cross(as_vector(polygon.corner[static_cast<std::size_t>(i)]) - origin);
-    return std::max(0.0, 0.5 * twice.dot(normal));
+    double twice = 0.0;
+    Vec3 moment = Vec3::Zero();
+    for (int i = 2; i < polygon.size; ++i) {
+        const Vec3 a = as_vector(polygon.corner[static_cast<std::size_t>(i - 1)]) - origin;
+        const Vec3 b = as_vector(polygon.corner[static_cast<std::size_t>(i)]) - origin;
+        const double part = a.cross(b).dot(normal);
+        twice += part;
+        moment += part * (a + b);
+    }
+    if (!(twice > 0.0)) return {};
+    return {0.5 * twice, origin + moment / (3.0 * twice)};
 }
 
 // Point of a convex polygon closest to the origin of its coordinates.
@@ -154,11 +165,13 @@ class TriangleCutter {
         middle = middle / part.size - center;
         const bool clearly = middle.cwiseAbs().maxCoeff() < 0.5 - kClearlyInside;
         if (!clearly && !triangle_meets_cell(triangle_, center)) return;
-        double area = polygon_area(part, normal_);
-        if (!clearly) area *= share_of_area(part, cell);
+        PolygonArea measured = measure(part, normal_);
+        if (!clearly) measured.area *= share_of_area(part, cell);
+        const Vec3f closest = closest_to_origin(part, center, normal_).cast<float>();
+        const Vec3f centroid = measured.area > 0.0 ? Vec3f((measured.centroid - center).cast<float>()) : closest;
         patches_.push_back({static_cast<std::uint32_t>(cell[2]),
-                            static_cast<std::uint32_t>(cell[1] * extent_x_ + cell[0]), index_, static_cast<float>(area),
-                            closest_to_origin(part, center, normal_).cast<float>()});
+                            static_cast<std::uint32_t>(cell[1] * extent_x_ + cell[0]), index_,
+                            static_cast<float>(measured.area), closest, centroid});
     }
 
   private:

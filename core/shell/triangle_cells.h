@@ -42,6 +42,7 @@ struct Patch {
     std::uint32_t triangle;  ///< index in the mesh
     float area;              ///< in square voxels; half of it where the patch lies in the face between two cells
     Vec3f closest;           ///< its point closest to the cell's centre, relative to that centre
+    Vec3f centroid;          ///< its centre of area, relative to the cell's centre; `closest` without an area
 };
 
 /// Exact up to kTouchVoxels: does the triangle meet the closed unit cube around `center`? The thirteen

@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kMinResolution = 4;
 constexpr int kMaxResolution = 2048;
+constexpr int kMostHalvings = 10;
 // Between these, areas of voxels are ordinary numbers in single precision.
 constexpr double kMinExtentMm = 1e-9;
 constexpr double kMaxExtentMm = 1e15;
@@ -31,6 +32,9 @@ void check_settings(const VoxelizeSettings& settings) {
     if (settings.resolution < kMinResolution || settings.resolution > kMaxResolution)
         throw InvalidSetting("voxelize: resolution is " + std::to_string(settings.resolution) + ", expected " +
                              std::to_string(kMinResolution) + " to " + std::to_string(kMaxResolution));
+    if (settings.halvings < 0 || settings.halvings > kMostHalvings)
+        throw InvalidSetting("voxelize: halvings is " + std::to_string(settings.halvings) + ", expected 0 to " +
+                             std::to_string(kMostHalvings));
 }
 
 void check_mesh(const TriangleMesh& mesh) {
@@ -49,7 +53,7 @@ void check_mesh(const TriangleMesh& mesh) {
 // `resolution` voxels along the longest side. Along every axis the box lies centred in one voxel more than
 // it measures, rounded: between a quarter and three quarters of a voxel stay free at each end, so that the
 // outer flat faces of a model run through the middle of a layer and not along the border of two.
-VoxelGrid make_grid(const TriangleMesh& mesh, int resolution) {
+VoxelGrid make_grid(const TriangleMesh& mesh, const VoxelizeSettings& settings) {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 high = -low;
     for (const Triangle& t : mesh.triangles)
@@ -59,7 +63,7 @@ VoxelGrid make_grid(const TriangleMesh& mesh, int resolution) {
         }
     const Vec3 size = high - low;
     VoxelGrid grid;
-    grid.voxel_mm = size.maxCoeff() / resolution;
+    grid.voxel_mm = size.maxCoeff() / settings.resolution;
     if (!(size.maxCoeff() >= kMinExtentMm && size.maxCoeff() <= kMaxExtentMm))
         throw InvalidInput("voxelize: the longest side of the mesh measures " + as_text(size.maxCoeff()) +
                            " mm, expected " + as_text(kMinExtentMm) + " to " + as_text(kMaxExtentMm));
@@ -68,6 +72,8 @@ VoxelGrid make_grid(const TriangleMesh& mesh, int resolution) {
         grid.extent[static_cast<std::size_t>(k)] = cells;
         grid.origin_mm[k] = 0.5 * (low[k] + high[k]) - 0.5 * cells * grid.voxel_mm;
     }
+    for (std::int32_t& cells : grid.extent) cells = ((cells - 1) >> settings.halvings) + 1;
+    grid.voxel_mm = std::ldexp(grid.voxel_mm, settings.halvings);
     return grid;
 }
 
@@ -79,7 +85,7 @@ SurfaceVoxels voxelize(const TriangleMesh& mesh, const VoxelizeSettings& setting
     run.checkpoint("voxelize", 0.0);
 
     SurfaceVoxels shell;
-    shell.grid = make_grid(mesh, settings.resolution);
+    shell.grid = make_grid(mesh, settings);
     const GriddedMesh gridded = lay_into_grid(mesh, shell.grid);
     run.checkpoint("voxelize", 0.05);
     LayeredPatches patches = cut_mesh(gridded, shell.grid.extent, run);

@@ -11,6 +11,9 @@ struct VoxelizeSettings {
     /// Voxels along the longest side of the mesh's bounding box. Range [4, 2048].
     /// The paper uses 256, and 512 for models with fine detail.
     int resolution = 256;
+    /// The grid is that of `resolution`, in cells of 2^halvings voxels a side: a cell is selected exactly when one
+    /// of its voxels would be, so that the shell is a coarse level of the pyramid of the finer one. Range [0, 10].
+    int halvings = 0;
 };
 
 /// Selects every voxel of a regular grid that the surface passes through.
@@ -40,7 +43,7 @@ struct VoxelizeSettings {
 ///              soups first, `core/mesh/repair.h`). Triangles of zero area add no normal.
 /// \throws InvalidInput    no triangle; an index past the end; a coordinate that is not finite; a
 ///                         longest side outside [1e-9, 1e15] mm.
-/// \throws InvalidSetting  `resolution` out of range.
+/// \throws InvalidSetting  `resolution` or `halvings` out of range.
 /// \throws Cancelled       `run` asked to stop.
 SurfaceVoxels voxelize(const TriangleMesh& mesh, const VoxelizeSettings& settings = {}, const RunControl& run = {});
 

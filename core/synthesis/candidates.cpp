@@ -26,12 +26,6 @@ std::uint64_t scramble(std::uint64_t bits) {
 
 }  // namespace
 
-Candidate coherent_candidate(const SynthesisProblem& problem, const ProblemLevel& level, VoxelIndex v,
-                             const Choice& neighbor) {
-    return {neighbor.label, neighbor.part,
-            texel_at(problem.map, neighbor.part, neighbor.label.origin, level.points[v])};
-}
-
 Candidate transported_candidate(const SynthesisProblem& problem, const ProblemLevel& level, VoxelIndex v,
                                 const Choice& neighbor, const LevelOffset& offset) {
     const PlaneIndex plane = level.best_plane[v];

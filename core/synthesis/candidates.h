@@ -16,10 +16,6 @@ struct Candidate {
     TexelPosition texel;
 };
 
-/// The neighbour's label, as it stands.
-Candidate coherent_candidate(const SynthesisProblem& problem, const ProblemLevel& level, VoxelIndex v,
-                             const Choice& neighbor);
-
 /// The neighbour's label carried to the plane that fits the voxel: the picture keeps its axes and
 /// shows at the neighbour what the neighbour shows. `offset` leads from the voxel to the neighbour.
 Candidate transported_candidate(const SynthesisProblem& problem, const ProblemLevel& level, VoxelIndex v,

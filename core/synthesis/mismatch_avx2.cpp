@@ -1,21 +1,16 @@
+#include "core/base/avx2.h"
 #include "core/synthesis/mismatch.h"
 
 #if defined(__x86_64__)
 
-#include <immintrin.h>
-
 #include <bit>
-
-// Only these functions may use AVX2; they are called after a look at the processor.
-#define FRETWORK_AVX2 __attribute__((target("avx2")))
-#define FRETWORK_AVX2_INLINE __attribute__((target("avx2"), always_inline)) inline
+#include <cstddef>
 
 namespace fretwork {
 namespace {
 
-FRETWORK_AVX2_INLINE __m256i load(const void* p) {
-    return _mm256_loadu_si256(static_cast<const __m256i*>(p));  // as fast as an aligned load where it is aligned
-}
+using avx2::first_lanes;
+using avx2::load;
 
 /// Constants of a level in registers.
 struct Fetcher {
@@ -32,17 +27,25 @@ FRETWORK_AVX2_INLINE Fetcher make_fetcher(const TexelLevel& level) {
             _mm_cvtsi32_si128(level.v_shift)};
 }
 
+/// Eight texels at (u, v).
+FRETWORK_AVX2_INLINE __m256i fetch_at(const Fetcher& f, __m256i u, __m256i v) {
+    const __m256i shares = _mm256_blend_epi16(_mm256_srli_epi32(u, 16), v, 0xAA);
+    const __m256i column_row = _mm256_mulhi_epu16(shares, f.size);
+    return _mm256_i32gather_epi32(f.texels, _mm256_madd_epi16(column_row, f.stride), 4);
+}
+
 /// Eight texels at (u, v) + linear part * offset. The offset's z comes twice: alone in the lower halves
 /// of the lanes and alone in the upper ones.
 FRETWORK_AVX2_INLINE __m256i fetch(const Fetcher& f, __m256i u, __m256i v, __m256i u_xy, __m256i v_xy, __m256i uv_z,
                                    __m256i xy, __m256i z_low, __m256i z_high) {
     const __m256i du = _mm256_add_epi32(_mm256_madd_epi16(u_xy, xy), _mm256_madd_epi16(uv_z, z_low));
     const __m256i dv = _mm256_add_epi32(_mm256_madd_epi16(v_xy, xy), _mm256_madd_epi16(uv_z, z_high));
-    const __m256i at_u = _mm256_add_epi32(u, _mm256_sll_epi32(du, f.u_shift));
-    const __m256i at_v = _mm256_add_epi32(v, _mm256_sll_epi32(dv, f.v_shift));
-    const __m256i shares = _mm256_blend_epi16(_mm256_srli_epi32(at_u, 16), at_v, 0xAA);
-    const __m256i column_row = _mm256_mulhi_epu16(shares, f.size);
-    return _mm256_i32gather_epi32(f.texels, _mm256_madd_epi16(column_row, f.stride), 4);
+    return fetch_at(f, _mm256_add_epi32(u, _mm256_sll_epi32(du, f.u_shift)),
+                    _mm256_add_epi32(v, _mm256_sll_epi32(dv, f.v_shift)));
+}
+
+FRETWORK_AVX2_INLINE void store(void* to, __m256i lanes) {
+    _mm256_store_si256(static_cast<__m256i*>(to), lanes);
 }
 
 FRETWORK_AVX2_INLINE std::int32_t add_lanes(__m256i x) {
@@ -59,30 +62,6 @@ FRETWORK_AVX2_INLINE __m256i squares(__m256i bytes) {
     return _mm256_add_epi32(_mm256_madd_epi16(low, low), _mm256_madd_epi16(high, high));
 }
 
-/// All ones in the first `lanes` lanes.
-FRETWORK_AVX2_INLINE __m256i first_lanes(std::uint32_t lanes) {
-    return _mm256_cmpgt_epi32(_mm256_set1_epi32(static_cast<int>(lanes)), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-}
-
-/// Eight choices of eight fields -> eight fields of eight choices.
-FRETWORK_AVX2_INLINE void transpose(__m256i (&r)[8]) {
-    __m256i s[8], t[8];
-    for (int i = 0; i < 4; ++i) {
-        s[2 * i] = _mm256_unpacklo_epi32(r[2 * i], r[2 * i + 1]);
-        s[2 * i + 1] = _mm256_unpackhi_epi32(r[2 * i], r[2 * i + 1]);
-    }
-    for (int i = 0; i < 2; ++i) {
-        t[4 * i] = _mm256_unpacklo_epi64(s[4 * i], s[4 * i + 2]);
-        t[4 * i + 1] = _mm256_unpackhi_epi64(s[4 * i], s[4 * i + 2]);
-        t[4 * i + 2] = _mm256_unpacklo_epi64(s[4 * i + 1], s[4 * i + 3]);
-        t[4 * i + 3] = _mm256_unpackhi_epi64(s[4 * i + 1], s[4 * i + 3]);
-    }
-    for (int i = 0; i < 4; ++i) {
-        r[i] = _mm256_permute2x128_si256(t[i], t[i + 4], 0x20);
-        r[i + 4] = _mm256_permute2x128_si256(t[i], t[i + 4], 0x31);
-    }
-}
-
 FRETWORK_AVX2 void view_neighbors(const TexelLevel& level, const Choice* choices, const NeighborBlock* blocks,
                                   std::uint32_t count, NeighborView& view) {
     static_assert(sizeof(Choice) == 32);
@@ -93,10 +72,13 @@ FRETWORK_AVX2 void view_neighbors(const TexelLevel& level, const Choice* choices
         const NeighborBlock& b = blocks[i / 8];
         __m256i r[8];
         for (int lane = 0; lane < 8; ++lane) r[lane] = load(choices + b.neighbor[lane]);
-        transpose(r);
-        _mm256_store_si256(reinterpret_cast<__m256i*>(view.color + i), r[5]);
-        _mm256_store_si256(reinterpret_cast<__m256i*>(view.linear + i), r[6]);
-        _mm256_store_si256(reinterpret_cast<__m256i*>(view.origin + i), r[7]);
+        avx2::transpose(r);
+        store(view.u_xy + i, r[2]);
+        store(view.v_xy + i, r[3]);
+        store(view.uv_z + i, r[4]);
+        store(view.color + i, r[5]);
+        store(view.linear + i, r[6]);
+        store(view.origin + i, r[7]);
         const __m256i z = load(b.z);
         __m256i expected = fetch(f, r[0], r[1], r[2], r[3], r[4], load(b.back_xy), _mm256_srli_epi32(z, 16),
                                  _mm256_andnot_si256(_mm256_set1_epi32(0xFFFF), z));
@@ -113,7 +95,7 @@ FRETWORK_AVX2 void view_neighbors(const TexelLevel& level, const Choice* choices
 }
 
 FRETWORK_AVX2 std::uint32_t distinct_labels(const NeighborView& view, std::uint32_t count, CoherentLabel* labels) {
-    constexpr std::uint32_t kWords = (kMaxNeighbors + 63) / 64;
+    constexpr std::uint32_t kWords = (Neighborhoods::kMost + 63) / 64;
     std::uint64_t left[kWords] = {};  // one bit per neighbour whose label is not counted yet
     for (std::uint32_t w = 0; 64 * w < count; ++w)
         left[w] = count - 64 * w >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (count - 64 * w)) - 1;
@@ -140,6 +122,59 @@ FRETWORK_AVX2 std::uint32_t distinct_labels(const NeighborView& view, std::uint3
     return distinct;
 }
 
+FRETWORK_AVX2_INLINE __m256i low_halves(__m256i pairs) {
+    return _mm256_srai_epi32(_mm256_slli_epi32(pairs, 16), 16);
+}
+FRETWORK_AVX2_INLINE __m256i high_halves(__m256i pairs) {
+    return _mm256_srai_epi32(pairs, 16);
+}
+
+FRETWORK_AVX2_INLINE __m256i gather(const void* table, __m256i at) {
+    return _mm256_i32gather_epi32(static_cast<const int*>(table), at, 4);
+}
+
+FRETWORK_AVX2 void project_labels(const TexelLevel& level, const NeighborView& view, const FixedPoint& point,
+                                  const CoherentLabel* labels, std::uint32_t labels_count, ScreenedTexels& screened) {
+    static_assert(sizeof(CoherentLabel) == 16 && offsetof(CoherentLabel, first_seen) == 12);
+    const __m256i x = _mm256_set1_epi32(point.x), y = _mm256_set1_epi32(point.y), z = _mm256_set1_epi32(point.z);
+    const __m128i u_shift = _mm_cvtsi32_si128(level.u_place_shift), v_shift = _mm_cvtsi32_si128(level.v_place_shift);
+    for (std::uint32_t i = 0; i < labels_count; i += 8) {
+        alignas(32) std::uint32_t seen[8] = {};
+        for (std::uint32_t lane = 0; lane < 8 && i + lane < labels_count; ++lane)
+            seen[lane] = labels[i + lane].first_seen;
+        const __m256i w = load(seen);
+        const __m256i u_xy = gather(view.u_xy, w), v_xy = gather(view.v_xy, w), uv_z = gather(view.uv_z, w);
+        const __m256i origin = gather(view.origin, w);
+        const __m256i u = _mm256_add_epi32(
+            _mm256_add_epi32(_mm256_mullo_epi32(low_halves(u_xy), x), _mm256_mullo_epi32(high_halves(u_xy), y)),
+            _mm256_mullo_epi32(low_halves(uv_z), z));
+        const __m256i v = _mm256_add_epi32(
+            _mm256_add_epi32(_mm256_mullo_epi32(low_halves(v_xy), x), _mm256_mullo_epi32(high_halves(v_xy), y)),
+            _mm256_mullo_epi32(high_halves(uv_z), z));
+        const __m256i upper = _mm256_andnot_si256(_mm256_set1_epi32(0xFFFF), origin);
+        store(screened.u + i, _mm256_add_epi32(upper, _mm256_sll_epi32(u, u_shift)));
+        store(screened.v + i, _mm256_add_epi32(_mm256_slli_epi32(origin, 16), _mm256_sll_epi32(v, v_shift)));
+    }
+}
+
+FRETWORK_AVX2 void first_halves(const TexelLevel& level, const NeighborView& view, std::uint32_t count,
+                                std::uint32_t texels, ScreenedTexels& screened) {
+    const Fetcher f = make_fetcher(level);
+    const __m256i neighbors = _mm256_set1_epi32(static_cast<int>(count));
+    const __m256i expected_squares = _mm256_set1_epi32(view.expected_squares), byte = _mm256_set1_epi32(0xFF);
+    for (std::uint32_t i = 0; i < texels; i += 8) {
+        const __m256i color = fetch_at(f, load(screened.u + i), load(screened.v + i));
+        __m256i square = _mm256_setzero_si256(), product = _mm256_setzero_si256();
+        for (int c = 0; c < 4; ++c) {
+            const __m256i value = _mm256_and_si256(_mm256_srl_epi32(color, _mm_cvtsi32_si128(8 * c)), byte);
+            square = _mm256_add_epi32(square, _mm256_madd_epi16(value, value));
+            product = _mm256_add_epi32(product, _mm256_mullo_epi32(value, _mm256_set1_epi32(view.expected_sum[c])));
+        }
+        const __m256i half = _mm256_sub_epi32(_mm256_mullo_epi32(neighbors, square), _mm256_slli_epi32(product, 1));
+        store(screened.first_half + i, _mm256_add_epi32(half, expected_squares));
+    }
+}
+
 FRETWORK_AVX2 std::int32_t disagreement(const TexelLevel& level, const NeighborBlock* blocks, std::uint32_t count,
                                         const NeighborView& view, const TexelPosition& texel, const LinearPart& part,
                                         std::int32_t limit) {
@@ -163,7 +198,7 @@ FRETWORK_AVX2 std::int32_t disagreement(const TexelLevel& level, const NeighborB
 
 }  // namespace
 
-const MismatchKernels kAvx2Mismatch{view_neighbors, distinct_labels, disagreement};
+const MismatchKernels kAvx2Mismatch{view_neighbors, distinct_labels, project_labels, first_halves, disagreement};
 
 }  // namespace fretwork
 

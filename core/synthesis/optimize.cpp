@@ -47,39 +47,75 @@ class Improver {
         return probe_ == nullptr || problem_.solid_at(texel_at(problem_.map, c.part, c.label.origin, *probe_));
     }
 
-    /// Most votes first, so that a good label is known early; then by label.
     void collect_labels() {
         labels_.resize(energy_.neighbors());
         labels_.resize(problem_.kernels.distinct_labels(energy_.view(), energy_.neighbors(), labels_.data()));
+    }
+
+    /// Most votes first, then by label.
+    void sort_labels() {
         std::sort(labels_.begin(), labels_.end(), [](const CoherentLabel& a, const CoherentLabel& b) {
             return a.votes != b.votes ? a.votes > b.votes : a.label < b.label;
         });
+    }
+
+    /// Brings the label with the most votes to the front, so that a good one is known early.
+    void most_votes_first() {
+        if (labels_.empty()) return;
+        std::swap(labels_.front(),
+                  *std::max_element(labels_.begin(), labels_.end(),
+                                    [](const CoherentLabel& a, const CoherentLabel& b) { return a.votes < b.votes; }));
     }
 
     [[nodiscard]] const Choice& neighbor(std::uint32_t i) const { return choices_[energy_.block(i).neighbor[i % 8]]; }
 
     void consider(const Candidate& c) {
         if (c.label == best_.label || !admissible(c)) return;
-        const Energy e = energy_.of(c, best_energy_);
+        take_if_better(c, energy_.of(c, best_energy_));
+    }
+
+    void take_if_better(const Candidate& c, Energy e) {
         if (e < best_energy_ || (e == best_energy_ && c.label < best_.label)) {
             best_energy_ = e;
             best_ = c;
         }
     }
 
+    /// The first `count` labels as they stand: the energy that their texel alone costs is found for all at once, and
+    /// most get no further.
+    void try_coherent(std::size_t count) {
+        const auto labels = static_cast<std::uint32_t>(count);
+        const NeighborView& view = energy_.view();
+        problem_.kernels.project_labels(level_.texels, view, level_.points[v_], labels_.data(), labels, screened_);
+        problem_.kernels.first_halves(level_.texels, view, energy_.neighbors(), labels, screened_);
+        for (std::uint32_t i = 0; i < labels; ++i) {
+            if (screened_.first_half[i] > best_energy_ || labels_[i].label == best_.label) continue;
+            const std::uint32_t seen = labels_[i].first_seen;
+            const Candidate c{labels_[i].label,
+                              {view.u_xy[seen], view.v_xy[seen], view.uv_z[seen]},
+                              {screened_.u[i], screened_.v[i]}};
+            if (admissible(c)) take_if_better(c, energy_.of(c, screened_.first_half[i], best_energy_));
+        }
+    }
+
     /// \return how many of the candidates that takes up
     int try_neighbors() {
         const SynthesisSettings& s = problem_.settings;
-        const std::size_t coherent = std::min(labels_.size(), static_cast<std::size_t>(s.candidates));
-        for (std::size_t i = 0; i < coherent; ++i)
-            consider(coherent_candidate(problem_, level_, v_, neighbor(labels_[i].first_seen)));
+        const bool transports = level_.rank >= kFineLevels || probe_ != nullptr;
+        const auto most = static_cast<std::size_t>(s.candidates);
+        // The order of the candidates never matters, only which of them are tried.
+        if (labels_.size() > most || (transports && s.transported > 0))
+            sort_labels();
+        else
+            most_votes_first();
+        const std::size_t coherent = std::min(labels_.size(), most);
+        try_coherent(coherent);
         if (probe_ != nullptr)
             for (std::size_t i = 0; i < coherent; ++i)
                 consider(snapped_candidate(problem_, level_, v_, *probe_, neighbor(labels_[i].first_seen)));
 
         std::size_t transported = 0;
-        if (level_.index >= kFineLevels || probe_ != nullptr)
-            transported = std::min(labels_.size(), static_cast<std::size_t>(s.transported));
+        if (transports) transported = std::min(labels_.size(), static_cast<std::size_t>(s.transported));
         for (std::size_t i = 0; i < transported; ++i) {
             const std::uint32_t seen = labels_[i].first_seen;
             const NeighborBlock& b = energy_.block(seen);
@@ -92,26 +128,40 @@ class Improver {
     void try_random(int tried) {
         const SynthesisSettings& s = problem_.settings;
         int count = std::max(0, s.candidates - tried);
-        if (level_.index < kFineLevels) count = std::min(count, s.fine_random_candidates);
+        if (level_.rank < kFineLevels) count = std::min(count, s.fine_random_candidates);
         if (probe_ != nullptr) count = std::max(count, kLeastRandomWhenForced);
-        const bool texel_known = s.translations == 0;  // else the label's origin is rounded and moves it
+        const ItemRandom random(s.seed, RandomStream::kSynthesisCandidates, epoch_, level_.place(v_));
+        // With steps of translation the label's origin is rounded and moves the texel.
+        if (probe_ == nullptr && s.translations == 0) {
+            try_random_texels(random, static_cast<std::uint32_t>(count));
+            return;
+        }
         for (int i = 0; i < count; ++i) {
-            const std::uint64_t bits =
-                counter_random(s.seed, RandomStream::kSynthesisCandidates, epoch_, v_, static_cast<std::uint32_t>(i));
-            try_random_candidate(bits, texel_known);
+            const std::uint64_t bits = random.draw(static_cast<std::uint32_t>(i));
+            const PlaneIndex plane = random_.plane(v_, bits);
+            consider(probe_ != nullptr
+                         ? random_.candidate(v_, plane, random_.solid_texel(bits), *probe_, bits)
+                         : random_.candidate(v_, plane, RandomCandidates::texel(bits), level_.points[v_], bits));
         }
     }
 
-    void try_random_candidate(std::uint64_t bits, bool texel_known) {
-        if (probe_ != nullptr) {
-            consider(random_.candidate(v_, random_.plane(v_, bits), random_.solid_texel(bits), *probe_, bits));
-            return;
+    /// Texel first, for all at once: most fail by it.
+    void try_random_texels(const ItemRandom& random, std::uint32_t count) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const TexelPosition texel = RandomCandidates::texel(random.draw(i));
+            screened_.u[i] = texel.u;
+            screened_.v[i] = texel.v;
         }
-        const TexelPosition texel = RandomCandidates::texel(bits);
-        if (texel_known && energy_.bound(texel) > best_energy_) return;
-        const PlaneIndex plane = random_.plane(v_, bits);
-        if (texel_known && energy_.bound(texel, plane) > best_energy_) return;
-        consider(random_.candidate(v_, plane, texel, level_.points[v_], bits));
+        problem_.kernels.first_halves(level_.texels, energy_.view(), energy_.neighbors(), count, screened_);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            if (screened_.first_half[i] > best_energy_) continue;
+            const TexelPosition texel{screened_.u[i], screened_.v[i]};
+            if (energy_.bound(texel, screened_.first_half[i]) > best_energy_) continue;
+            const std::uint64_t bits = random.draw(i);
+            const PlaneIndex plane = random_.plane(v_, bits);
+            if (energy_.bound(texel, screened_.first_half[i], plane) > best_energy_) continue;
+            consider(random_.candidate(v_, plane, texel, level_.points[v_], bits));
+        }
     }
 
     const SynthesisProblem& problem_;
@@ -122,6 +172,7 @@ class Improver {
     const RandomCandidates& random_;
     VoxelEnergy energy_;
     std::vector<CoherentLabel> labels_;
+    ScreenedTexels screened_;
 
     VoxelIndex v_ = 0;
     const FixedPoint* probe_ = nullptr;

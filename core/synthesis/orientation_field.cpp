@@ -82,7 +82,8 @@ std::vector<OrientationField> orientation_fields(const VoxelPyramid& pyramid, in
         // On a shell of cells of side h a sum of differences over the neighbours is about 3.3 h^2 Laplacians.
         const double cells = settings.smoothing_voxels / std::ldexp(1.0, static_cast<int>(l));
         const auto pull = static_cast<float>(3.3 / (cells * cells));
-        const int steps = l >= 3 ? 40 : l == 2 ? 16 : l == 1 ? 6 : 2;
+        const int rank = static_cast<int>(l) + settings.skipped_levels;
+        const int steps = rank >= 3 ? 40 : rank == 2 ? 16 : rank == 1 ? 6 : 2;
         for (int i = 0; i < steps; ++i) x = smooth_once(level, x, projected, pull, settings.symmetric);
         if (l < count) fields[l] = to_field(x, 0.5F);
     }

@@ -19,6 +19,7 @@ struct OrientationFieldSettings {
     Vec3f direction = Vec3f::UnitZ();
     bool symmetric = false;         ///< a direction and its opposite are the same
     double smoothing_voxels = 0.0;  ///< length over which the field is evened out; 0: the bare projection
+    int skipped_levels = 0;         ///< finer levels that are left out (SynthesisSettings)
 };
 
 /// Projects `direction` onto the surface of every level. The projection vanishes where the surface

@@ -9,16 +9,18 @@
 namespace fretwork {
 
 /// Passes belong to the coarse levels, where they are cheap and decide the layout.
-[[nodiscard]] inline int passes_on_level(const SynthesisSettings& settings, int level) {
-    return std::min(settings.coarse_passes, 1 << std::min(level, 16));
+/// \param rank  of the level (ProblemLevel)
+[[nodiscard]] inline int passes_on_level(const SynthesisSettings& settings, int rank) {
+    return std::min(settings.coarse_passes, 1 << std::min(rank, 16));
 }
 
 /// Least passes of a local update, which has to grow in from its surroundings.
 inline constexpr int kLocalPasses = 2;
 
 /// A number for each pass of each level of each call.
-[[nodiscard]] inline std::uint32_t epoch_of(int level, int pass, std::uint32_t call) {
-    return call << 12 | static_cast<std::uint32_t>(level) << 8 | static_cast<std::uint32_t>(pass);
+/// \param height  of the level (ProblemLevel)
+[[nodiscard]] inline std::uint32_t epoch_of(int height, int pass, std::uint32_t call) {
+    return call << 12 | static_cast<std::uint32_t>(height) << 8 | static_cast<std::uint32_t>(pass);
 }
 
 }  // namespace fretwork

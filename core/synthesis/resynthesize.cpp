@@ -140,9 +140,9 @@ std::vector<VoxelIndex> update_locally(const SynthesisProblem& problem, const st
         for (const VoxelIndex v : local[l]) before.push_back(all[l][v].label);
         if (l + 1 < local.size()) upsample_changed(problem, l, changed, all);
         const Subpasses subpasses = split_into_subpasses(level.shell->coords, local[l]);
-        const int passes = std::max(kLocalPasses, passes_on_level(problem.settings, level.index));
+        const int passes = std::max(kLocalPasses, passes_on_level(problem.settings, level.rank));
         for (int pass = 0; pass < passes; ++pass)
-            optimize_pass(problem, level, subpasses, tags[l], epoch_of(level.index, pass, epoch), all[l], run);
+            optimize_pass(problem, level, subpasses, tags[l], epoch_of(level.height, pass, epoch), all[l], run);
         changed.clear();
         for (std::size_t i = 0; i < local[l].size(); ++i)
             if (all[l][local[l][i]].label != before[i]) changed.push_back(local[l][i]);

@@ -27,10 +27,11 @@ Choices constant_labels(const SynthesisProblem& problem, const ProblemLevel& lev
 Choices random_labels(const SynthesisProblem& problem, const ProblemLevel& level) {
     Choices choices(level.size());
     const RandomCandidates random(problem, level);
-    const auto epoch = static_cast<std::uint32_t>(level.index);
+    const auto epoch = static_cast<std::uint32_t>(level.height);
     parallel_for(level.size(), 1024, [&](std::size_t i) {
         const auto v = static_cast<VoxelIndex>(i);
-        const std::uint64_t bits = counter_random(problem.settings.seed, RandomStream::kSynthesisInit, epoch, v, 0);
+        const std::uint64_t bits =
+            counter_random(problem.settings.seed, RandomStream::kSynthesisInit, epoch, level.place(v), 0);
         choices[v] = random_choice(problem, level, random, v, bits);
     });
     return choices;
@@ -47,13 +48,14 @@ Choices upsample(const SynthesisProblem& problem, const ProblemLevel& level, con
 
 void jitter(const SynthesisProblem& problem, const ProblemLevel& level, Choices& choices) {
     const SynthesisSettings& s = problem.settings;
-    if (s.jitter <= 0.0 || level.index < s.jitter_from_level) return;
+    if (s.jitter <= 0.0 || level.rank < s.jitter_from_level) return;
     const RandomCandidates random(problem, level);
-    const auto epoch = static_cast<std::uint32_t>(level.index);
+    const auto epoch = static_cast<std::uint32_t>(level.height);
     parallel_for(level.size(), 1024, [&](std::size_t i) {
         const auto v = static_cast<VoxelIndex>(i);
-        if (unit_interval(counter_random(s.seed, RandomStream::kSynthesisJitter, epoch, v, 0)) >= s.jitter) return;
-        const std::uint64_t bits = counter_random(s.seed, RandomStream::kSynthesisJitter, epoch, v, 1);
+        const std::uint64_t place = level.place(v);
+        if (unit_interval(counter_random(s.seed, RandomStream::kSynthesisJitter, epoch, place, 0)) >= s.jitter) return;
+        const std::uint64_t bits = counter_random(s.seed, RandomStream::kSynthesisJitter, epoch, place, 1);
         choices[v] = random_choice(problem, level, random, v, bits);
     });
 }

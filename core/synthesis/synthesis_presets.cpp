@@ -3,15 +3,6 @@
 namespace fretwork {
 namespace {
 
-SynthesisSettings draft_settings() {
-    SynthesisSettings s;
-    s.candidates = 24;
-    s.fine_random_candidates = 4;
-    s.transported = 2;
-    s.coarse_passes = 4;
-    return s;
-}
-
 SynthesisSettings fine_settings() {
     SynthesisSettings s;
     s.directions = 600;
@@ -45,8 +36,6 @@ SynthesisSettings paper_settings() {
 
 SynthesisSettings synthesis_settings(SynthesisPreset preset) {
     switch (preset) {
-        case SynthesisPreset::kDraft:
-            return draft_settings();
         case SynthesisPreset::kFine:
             return fine_settings();
         case SynthesisPreset::kPaper:

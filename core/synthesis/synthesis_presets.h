@@ -8,7 +8,6 @@
 namespace fretwork {
 
 enum class SynthesisPreset {
-    kDraft,    ///< about twice as fast as the default, seams now and then
     kDefault,  ///< the best looks for their time
     kFine,     ///< slower, for final results
     kPaper,    ///< the parameters of section 6.1 of the paper, no more and no less

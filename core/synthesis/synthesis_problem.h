@@ -10,7 +10,6 @@
 #include "core/pyramid/voxel_pyramid.h"
 #include "core/synthesis/choice.h"
 #include "core/synthesis/mismatch.h"
-#include "core/synthesis/neighbor_blocks.h"
 #include "core/synthesis/orientation_field.h"
 #include "core/synthesis/plane_set.h"
 #include "core/synthesis/plane_transforms.h"
@@ -22,15 +21,20 @@ namespace fretwork {
 /// One level of the pyramid, prepared.
 struct ProblemLevel {
     const PyramidLevel* shell = nullptr;
-    int index = 0;
+    int index = 0;   ///< in the pyramid, 0 finest
+    int rank = 0;    ///< `index` and the finer levels that are left out: how fine the level is for the run
+    int height = 0;  ///< counted from the coarsest level of the pyramid, so that a draft and its full run agree
     TexelLevel texels;
     std::vector<FixedPoint> points;
     std::vector<PlaneIndex> best_plane;  ///< nearest to the normal
     OrientationField field;              ///< empty when every rotation is as good as any other
     Subpasses subpasses;
-    NeighborBlocks neighbors;
 
     [[nodiscard]] std::size_t size() const { return points.size(); }
+
+    /// Names a voxel by its place, which is the same in a draft and in the full run: the cell, and how many entries
+    /// of this cell come before. For random numbers.
+    [[nodiscard]] std::uint64_t place(VoxelIndex v) const;
 };
 
 /// Texels of the solid part, in row order, and those of them deeper inside than the median.

@@ -44,6 +44,7 @@ void check(const SynthesisSettings& s) {
     require(within(s.feature_weight, 0, 1), "feature_weight", s.feature_weight, "[0, 1]");
     require(within(s.coarse_passes, 1, 64), "coarse_passes", s.coarse_passes, "[1, 64]");
     require(within(s.jitter, 0, 1), "jitter", s.jitter, "[0, 1]");
+    require(within(s.skipped_levels, 0, 10), "skipped_levels", s.skipped_levels, "[0, 10]");
     require(s.jitter_from_level >= 0, "jitter_from_level", s.jitter_from_level, "0 or more");
     require(!s.start_level || *s.start_level >= 0, "start_level", s.start_level.value_or(0), "0 or more");
 }
@@ -82,7 +83,7 @@ struct Synthesizer::Impl {
     void synthesize(const RunControl& run) {
         double total = 0.0, done = 0.0;
         for (const ProblemLevel& level : problem.levels)
-            total += static_cast<double>(level.size()) * passes_on_level(problem.settings, level.index);
+            total += static_cast<double>(level.size()) * passes_on_level(problem.settings, level.rank);
         choices.assign(problem.levels.size(), {});
         for (std::size_t l = problem.levels.size(); l-- > 0;) {
             const ProblemLevel& level = problem.levels[l];
@@ -96,8 +97,8 @@ struct Synthesizer::Impl {
                 choices[l] = constant_labels(problem, level);
                 if (l > 0) continue;  // the paper leaves the coarsest level as it is
             }
-            for (int pass = 0; pass < passes_on_level(problem.settings, level.index); ++pass) {
-                optimize_pass(problem, level, level.subpasses, {}, epoch_of(level.index, pass, 0), choices[l], run);
+            for (int pass = 0; pass < passes_on_level(problem.settings, level.rank); ++pass) {
+                optimize_pass(problem, level, level.subpasses, {}, epoch_of(level.height, pass, 0), choices[l], run);
                 done += static_cast<double>(level.size());
                 run.checkpoint("synthesis", kPrepareShare + (1.0 - kPrepareShare) * done / total);
             }
@@ -171,8 +172,7 @@ std::size_t Synthesizer::memory_bytes() const {
     for (const Choices& c : impl_->choices) bytes += c.capacity() * sizeof(Choice);
     for (const std::vector<std::uint32_t>& t : p.stack.levels) bytes += t.capacity() * sizeof(std::uint32_t);
     for (const ProblemLevel& level : p.levels)
-        bytes += level.neighbors.blocks.size() * sizeof(NeighborBlock) +
-                 level.size() * (sizeof(FixedPoint) + sizeof(PlaneIndex) + sizeof(Vec3f) + 3 * sizeof(float));
+        bytes += level.size() * (sizeof(FixedPoint) + sizeof(PlaneIndex) + sizeof(Vec3f) + 3 * sizeof(float));
     return bytes;
 }
 

@@ -53,6 +53,10 @@ struct SynthesisSettings {
     int jitter_from_level = 2;       ///< finer levels are left alone; 0 with the paper
     std::optional<int> start_level;  ///< else the finest one on which the blurred exemplar is nearly flat
 
+    /// Finer levels that are left out, in [0, 10]: the run does what one on a shell of 2^skipped_levels times the
+    /// resolution does down to this level, with the same passes, candidates and random numbers.
+    int skipped_levels = 0;
+
     bool portable_code = false;  ///< for tests: no special instructions; labels are the same
 };
 

@@ -2,30 +2,12 @@
 // instruction set computes the same bits.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 
+#include "core/base/fixed_point.h"
 #include "core/base/vec.h"
 
 namespace fretwork {
-
-/// Two 16-bit integers in one lane, the layout of the multiply-add instructions.
-[[nodiscard]] inline std::int32_t pack16(std::int32_t low, std::int32_t high) {
-    return static_cast<std::int32_t>((static_cast<std::uint32_t>(high) << 16) |
-                                     (static_cast<std::uint32_t>(low) & 0xFFFFu));
-}
-[[nodiscard]] inline std::int32_t low16(std::int32_t pair) {
-    return static_cast<std::int16_t>(static_cast<std::uint32_t>(pair) & 0xFFFFu);
-}
-[[nodiscard]] inline std::int32_t high16(std::int32_t pair) {
-    return pair >> 16;
-}
-
-/// Nearest integer, to even on a tie, for |x| < 2^22. Adding 1.5 * 2^23 leaves it in the low bits; no
-/// branch, as signs come at random.
-[[nodiscard]] inline std::int32_t round_to_int(float x) {
-    return std::bit_cast<std::int32_t>(x + 12582912.0F) - 0x4B400000;
-}
 
 /// A position in the exemplar: u to the right, v downwards; 2^32 is one period.
 struct TexelPosition {
@@ -46,12 +28,13 @@ struct LevelOffset {
     std::int32_t z = 0;  ///< low half; the high half is zero
 };
 
-/// A surface point in finest voxels, 12 fractional bits.
+/// A surface point in finest voxels, those of the full run in a draft, 12 fractional bits.
 struct FixedPoint {
     std::int32_t x = 0, y = 0, z = 0;
 };
 
-[[nodiscard]] FixedPoint to_fixed(const Vec3f& position_voxels);
+/// \param skipped_levels  SynthesisSettings
+[[nodiscard]] FixedPoint to_fixed(const Vec3f& position_voxels, int skipped_levels = 0);
 
 /// Converts between pixels, shares of the period and voxels for one exemplar and one scale.
 ///
@@ -60,14 +43,20 @@ struct FixedPoint {
 class TexelMap {
   public:
     TexelMap() = default;
+    /// A draft computes with the integers of the full run, so that the two agree.
     /// \param pixels_per_voxel  |u(tau)| = |v(tau)|
-    TexelMap(int width, int height, double pixels_per_voxel);
+    /// \param skipped_levels    SynthesisSettings
+    TexelMap(int width, int height, double pixels_per_voxel, int skipped_levels = 0);
 
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] double pixels_per_voxel() const { return pixels_per_voxel_; }
-    [[nodiscard]] int u_shift(int level) const { return 20 - u_bits_ + level; }
-    [[nodiscard]] int v_shift(int level) const { return 20 - v_bits_ + level; }
+    /// Binary places by which a projected offset of a level is short of a share of 2^32.
+    [[nodiscard]] int u_shift(int level) const { return u_place_shift() + skipped_levels_ + level; }
+    [[nodiscard]] int v_shift(int level) const { return v_place_shift() + skipped_levels_ + level; }
+    /// The same of a projected point.
+    [[nodiscard]] int u_place_shift() const { return 20 - u_bits_; }
+    [[nodiscard]] int v_place_shift() const { return 20 - v_bits_; }
 
     /// \param right, up  unit vectors of the plane; the picture's rows run downwards
     [[nodiscard]] LinearPart linear_part(const Vec3f& right, const Vec3f& up) const {
@@ -78,8 +67,8 @@ class TexelMap {
 
     /// Linear part applied to a surface point; add the label's origin to get M.
     [[nodiscard]] TexelPosition project(const LinearPart& part, const FixedPoint& p) const {
-        return {dot(low16(part.u_xy), high16(part.u_xy), low16(part.uv_z), p) << (20 - u_bits_),
-                dot(low16(part.v_xy), high16(part.v_xy), high16(part.uv_z), p) << (20 - v_bits_)};
+        return {dot(low16(part.u_xy), high16(part.u_xy), low16(part.uv_z), p) << u_place_shift(),
+                dot(low16(part.v_xy), high16(part.v_xy), high16(part.uv_z), p) << v_place_shift()};
     }
 
     /// Linear part applied to an offset of level `level`.
@@ -124,6 +113,7 @@ class TexelMap {
 
     int width_ = 1, height_ = 1;
     double pixels_per_voxel_ = 1.0;
+    int skipped_levels_ = 0;
     int u_bits_ = 0, v_bits_ = 0;
     float u_unit_ = 0.0F, v_unit_ = 0.0F;      // quantised units per unit of direction
     float u_pixels_ = 0.0F, v_pixels_ = 0.0F;  // pixels per voxel per quantised unit

@@ -32,6 +32,12 @@ TEST_CASE("counter_random: numbers of neighbouring counters do not collide and f
     CHECK(sum_of_squares / n == Approx(1.0 / 3.0).margin(5 * std::sqrt(4.0 / 45.0 / n)));
 }
 
+TEST_CASE("counter_random: an item draws the numbers that are counted for it", "[base]") {
+    const ItemRandom item(9, RandomStream::kTest, 4, 77);
+    for (std::uint32_t n = 0; n < 5; ++n) CHECK(item.draw(n) == counter_random(9, RandomStream::kTest, 4, 77, n));
+    CHECK(item.draw(0) != item.draw(1));
+}
+
 TEST_CASE("counter_random: index_below reaches every index and no other", "[base]") {
     std::vector<int> hits(10, 0);
     for (std::uint32_t i = 0; i < 2000; ++i)

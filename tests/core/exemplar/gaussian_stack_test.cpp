@@ -55,6 +55,13 @@ TEST_CASE("gaussian stack: blur keeps the mean and takes contrast away", "[exemp
         for (int c = 0; c < 4; ++c) CHECK(std::fabs(mean(stack.levels[l], c) - mean(stack.levels[0], c)) < 0.6);
     }
     CHECK(stack.contrast.back() < 0.02);
+    // It ends with the first flat level, and is the same up to there.
+    const GaussianStack part = build_gaussian_stack(blotches(48, 32, 0, tileable), {.levels = 7, .flat_contrast = 0.3});
+    REQUIRE(part.levels.size() < stack.levels.size());
+    REQUIRE(part.levels.size() > 1);
+    CHECK(part.contrast.back() <= 0.3 * stack.contrast[0]);
+    CHECK(part.contrast[part.contrast.size() - 2] > 0.3 * stack.contrast[0]);
+    for (std::size_t l = 0; l < part.levels.size(); ++l) CHECK(part.levels[l] == stack.levels[l]);
 }
 
 TEST_CASE("gaussian stack: a spike spreads with the stated width", "[exemplar]") {

@@ -33,6 +33,26 @@ TriangleMesh small_vase() {
     return testing::make_vase(50.0, 40, 24);
 }
 
+TEST_CASE("carve: a draft of a fine spec keeps one piece and a valid mesh on a fraction of the voxels", "[pipeline]") {
+    SpecDocument document;
+    for (const char* text : {"synthesis.preset=draft", "shell.resolution=400", "shell.thickness_mm=0.8",
+                             "fabrication.min_hole_mm=0.5", "structure.samples=120"})
+        document.assignments.push_back(parse_assignment(text, "test"));
+    const CarveResult result = carve(input_for(small_vase(), "cells"), settings_from(document));
+    const RunReport& r = result.report;
+    CHECK(r.shell.surface_voxels < 60000);
+    CHECK(r.shell.resolution < 200);
+    CHECK(r.pattern.components_after == 1);
+    CHECK(r.pattern.solid_fraction < 0.97);
+    CHECK(r.mesh.report.closed_manifold());
+    CHECK(r.mesh.report.self_intersections == 0);
+    // The report's settings make the same run again.
+    SpecDocument again{r.settings, {}};
+    const CarveResult repeated = carve(input_for(small_vase(), "cells"), settings_from(again));
+    CHECK(repeated.solid == result.solid);
+    CHECK(repeated.carved.mesh.positions_mm == result.carved.mesh.positions_mm);
+}
+
 TEST_CASE("carve: the record agrees with the result", "[pipeline]") {
     const CarveResult result = carve(input_for(small_vase(), "cells"), quick());
     const RunReport& r = result.report;

@@ -1,5 +1,6 @@
 #include "core/pipeline/resolve_settings.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <regex>
 
@@ -49,6 +50,37 @@ TEST_CASE("resolve: resolution is a matter of quality, not of design", "[pipelin
     CHECK(resolve({"synthesis.preset=draft", "shell.voxel_mm=0.5"}).voxelize.resolution == 200);
     CHECK(resolve({"synthesis.scale=1.5"}).exemplar_width_mm == Approx(75.0));
     CHECK(resolve({"exemplar.width_mm=20"}).synthesis.pixels_per_voxel == Approx(128 / 20.0 * 100 / 256));
+}
+
+TEST_CASE("resolve: a draft keeps the design of its full run and coarsens the grid as far as it takes", "[pipeline]") {
+    // 30,000 voxels of surface at most: a sphere of 100 mm has 206,000 at 256, and 51,000 at half of that.
+    const SurfaceFacts sphere{100.0, false, 31400.0};
+    const auto resolve_sphere = [&](std::initializer_list<const char*> assignments) {
+        return resolve_settings(with(assignments), sphere, kExemplar);
+    };
+    const ResolvedSettings full = resolve_sphere({}), draft = resolve_sphere({"synthesis.preset=draft"});
+    CHECK(full.voxelize.halvings == 0);
+    CHECK(draft.voxelize.resolution == full.voxelize.resolution);
+    CHECK(draft.voxelize.halvings == 2);
+    CHECK(draft.voxel_mm == 4.0 * full.voxel_mm);
+    CHECK(draft.synthesis.skipped_levels == 2);
+    CHECK(draft.synthesis.pixels_per_voxel == 4.0 * full.synthesis.pixels_per_voxel);
+    CHECK(draft.pyramid_levels == full.pyramid_levels - 2);
+    CHECK(draft.exemplar_width_mm == full.exemplar_width_mm);
+    CHECK(draft.synthesis.candidates == full.synthesis.candidates);
+    CHECK(draft.synthesis.coarse_passes == full.synthesis.coarse_passes);
+    // What the coarse grid cannot hold grows to what it can; what the full run refuses is refused.
+    CHECK(draft.solidify.thickness_mm == Approx(std::max(full.solidify.thickness_mm, 2.0 * draft.voxel_mm)));
+    CHECK(draft.reinforce.thickness_mm == draft.solidify.thickness_mm);
+    CHECK(draft.enlarge.min_feature_mm == Approx(2.0 * draft.voxel_mm));
+    CHECK(draft.reinforce.pattern_radius_voxels == 1.5);
+    CHECK_NOTHROW(resolve_sphere({"synthesis.preset=draft", "shell.thickness_mm=1"}));
+    CHECK_THROWS_AS(resolve_sphere({"synthesis.preset=draft", "shell.thickness_mm=0.5"}), ConstraintsNotMet);
+    // Any resolution ends at about as many voxels; a coarse one is left alone; the key wins.
+    CHECK(resolve_sphere({"synthesis.preset=draft", "shell.resolution=1024"}).voxelize.halvings == 4);
+    CHECK(resolve_sphere({"synthesis.preset=draft", "shell.resolution=64"}).voxelize.halvings == 0);
+    CHECK(resolve_sphere({"synthesis.preset=draft", "shell.halvings=1"}).voxelize.halvings == 1);
+    CHECK(resolve_sphere({"shell.halvings=3"}).voxelize.halvings == 3);
 }
 
 struct Contradiction {

@@ -5,14 +5,18 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <numeric>
+#include <random>
 #include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "core/base/avx2.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/pyramid/flat_ways.h"
 #include "core/shell/components.h"
 #include "core/shell/voxelize.h"
 #include "support/make_meshes.h"
@@ -49,18 +53,24 @@ bool linked(const Adjacency& adjacency, VoxelIndex v, VoxelIndex w) {
     return std::binary_search(row.begin(), row.end(), w);
 }
 
-std::span<const VoxelIndex> neighbors_of(const PyramidLevel& level, VoxelIndex v) {
-    const Neighborhoods& n = level.neighborhoods;
-    return {n.neighbor.data() + n.first[v], n.neighbor.data() + n.first[v + 1]};
+std::vector<VoxelIndex> neighbors_of(const PyramidLevel& level, VoxelIndex v) {
+    std::vector<VoxelIndex> row;
+    for (std::uint32_t i = 0; i < level.neighborhoods.count[v]; ++i) row.push_back(level.neighborhoods.neighbor(v, i));
+    return row;
 }
 
-// The offset from v to w.
-Vec3f offset_between(const PyramidLevel& level, VoxelIndex v, VoxelIndex w) {
+// Place of w in the list of v.
+std::uint32_t place_of(const PyramidLevel& level, VoxelIndex v, VoxelIndex w) {
     const auto row = neighbors_of(level, v);
     const auto at = std::lower_bound(row.begin(), row.end(), w);
     REQUIRE(at != row.end());
     REQUIRE(*at == w);
-    return level.neighborhoods.offset[level.neighborhoods.first[v] + static_cast<std::size_t>(at - row.begin())];
+    return static_cast<std::uint32_t>(at - row.begin());
+}
+
+// The offset from v to w, in cells.
+Vec3f offset_between(const PyramidLevel& level, VoxelIndex v, VoxelIndex w) {
+    return level.neighborhoods.way_out(v, place_of(level, v, w));
 }
 
 TEST_CASE("build_pyramid: level 0 is the shell, in the units of the grid", "[pyramid]") {
@@ -186,6 +196,29 @@ TEST_CASE("build_pyramid: positions and normals are means of the children", "[py
     }
 }
 
+TEST_CASE("build_pyramid: a shell of coarser cells has the coarse levels of the fine one", "[pyramid][property]") {
+    // Where a cell holds one sheet only; else the two may disagree on how many there are.
+    const TriangleMesh mesh = make_icosphere(10, 4);
+    for (const int halvings : {1, 2}) {
+        const VoxelPyramid full = build_pyramid(voxelize(mesh, {.resolution = 70}), 6);
+        const VoxelPyramid draft =
+            build_pyramid(voxelize(mesh, {.resolution = 70, .halvings = halvings}), 6 - halvings);
+        const auto skipped = static_cast<std::size_t>(halvings);
+        REQUIRE(draft.levels.size() + skipped == full.levels.size());
+        const float cell = std::exp2(static_cast<float>(halvings));
+        for (std::size_t l = 0; l < draft.levels.size(); ++l) {
+            const PyramidLevel &a = full.levels[l + skipped], &b = draft.levels[l];
+            CAPTURE(halvings, l);
+            REQUIRE(a.coords == b.coords);
+            for (VoxelIndex v = 0; v < a.size(); ++v) {
+                REQUIRE((a.normals[v] - b.normals[v]).norm() < 1e-3F);
+                // The finest level of either has points of the surface in the place of centres.
+                if (l > 0) REQUIRE((a.positions[v] - cell * b.positions[v]).norm() < 1e-3F * cell);
+            }
+        }
+    }
+}
+
 TEST_CASE("build_pyramid: sheets stay apart on every level, as long as no rim joins them", "[pyramid][property]") {
     // Two spheres a third of a voxel apart: at every level no entry mixes them.
     const SurfaceVoxels shell = voxelize(make_nested_spheres(10, 9.85), {.resolution = 64});
@@ -221,31 +254,61 @@ TEST_CASE("build_pyramid: sheets stay apart on every level, as long as no rim jo
     }
 }
 
-TEST_CASE("neighbourhoods: symmetric, sorted, with the reverse place of each pair", "[pyramid][property]") {
+TEST_CASE("neighbourhoods: symmetric, sorted, the way back of one the way out of the other", "[pyramid][property]") {
     for (const auto& [name, mesh] : assorted_meshes()) {
         CAPTURE(name);
         const VoxelPyramid pyramid = build_pyramid(voxelize(mesh, {.resolution = 24}), 12);
         for (const PyramidLevel& level : pyramid.levels) {
             const Neighborhoods& n = level.neighborhoods;
             REQUIRE(n.first.size() == level.size() + 1);
-            REQUIRE(n.neighbor.size() == n.first.back());
-            REQUIRE(n.offset.size() == n.first.back());
-            REQUIRE(n.reverse.size() == n.first.back());
-            for (VoxelIndex v = 0; v < level.size(); ++v)
-                for (std::uint32_t i = n.first[v]; i < n.first[v + 1]; ++i) {
-                    const VoxelIndex w = n.neighbor[i];
+            REQUIRE(n.count.size() == level.size());
+            REQUIRE(n.blocks.size() == n.first.back());
+            for (VoxelIndex v = 0; v < level.size(); ++v) {
+                REQUIRE(8 * (n.first[v + 1] - n.first[v]) >= n.count[v]);
+                for (std::uint32_t i = 0; i < n.count[v]; ++i) {
+                    const VoxelIndex w = n.neighbor(v, i);
                     REQUIRE(w != v);
-                    if (i > n.first[v]) REQUIRE(n.neighbor[i - 1] < w);
+                    if (i > 0) REQUIRE(n.neighbor(v, i - 1) < w);
                     for (std::size_t k = 0; k < 3; ++k) REQUIRE(std::abs(level.coords[w][k] - level.coords[v][k]) <= 2);
-                    REQUIRE(n.reverse[i] >= n.first[w]);
-                    REQUIRE(n.reverse[i] < n.first[w + 1]);
-                    REQUIRE(n.neighbor[n.reverse[i]] == v);
-                    // Offsets lie in the tangent plane.
-                    REQUIRE(n.offset[i].allFinite());
-                    REQUIRE(std::abs(level.normals[v].dot(n.offset[i])) < 1e-3F * (1.0F + n.offset[i].norm()));
+                    const Vec3f out = n.way_out(v, i);
+                    REQUIRE(out == n.way_back(w, place_of(level, w, v)));
+                    // Ways lie in the tangent plane.
+                    REQUIRE(std::abs(level.normals[v].dot(out)) < 1e-3F * (1.0F + out.norm()));
                 }
+                for (std::uint32_t i = n.count[v]; i % 8 != 0; ++i) {
+                    REQUIRE(n.neighbor(v, i) == v);
+                    REQUIRE(n.way_out(v, i) == Vec3f::Zero());
+                    REQUIRE(n.way_back(v, i) == Vec3f::Zero());
+                }
+            }
         }
     }
+}
+
+TEST_CASE("neighbourhoods: both instruction sets lay ways flat to the same bits", "[pyramid][property]") {
+    if (!machine_has_avx2()) return;
+    std::mt19937 rng(7);
+    std::uniform_real_distribution<float> place(-3.0F, 3.0F);
+    const auto random_vector = [&] { return Vec3f(place(rng), place(rng), place(rng)); };
+    std::vector<SurfaceFrame> frames;
+    for (int i = 0; i < 300; ++i) {
+        const Vec3f p = random_vector(), n = (0.3F * random_vector() + Vec3f(0, 0, 1)).normalized();
+        frames.push_back({{p.x(), p.y(), p.z(), 0.0F}, {n.x(), n.y(), n.z(), 0.0F}});
+    }
+    std::uint32_t bent = 0;
+    for (VoxelIndex v = 0; v < frames.size(); ++v) {
+        NeighborBlock plain{}, fast{};
+        for (std::size_t lane = 0; lane < 8; ++lane)
+            plain.neighbor[lane] = fast.neighbor[lane] = lane == 7 ? v : static_cast<VoxelIndex>(rng() % 300);
+        const float unit = std::ldexp(4096.0F, -static_cast<int>(v % 3));
+        const std::uint32_t lanes = lay_flat_portable(frames.data(), v, unit, plain);
+        REQUIRE(lay_flat_avx2(frames.data(), v, unit, fast) == lanes);
+        bent |= lanes;
+        REQUIRE(std::memcmp(&plain, &fast, sizeof plain) == 0);
+        CHECK(plain.out_xy[7] == 0);
+        CHECK(plain.z[7] == 0);
+    }
+    CHECK((bent & 0x7Fu) == 0x7Fu);
 }
 
 TEST_CASE("neighbourhoods: N(v) is what two steps that do not turn round reach", "[pyramid][property]") {
@@ -306,10 +369,15 @@ TEST_CASE("neighbourhoods: on a plane the offset is the way itself", "[pyramid][
     const double angle = GENERATE(0.0, 0.3, 0.8);
     const TriangleMesh mesh = rotated(make_square(30.0, 3), Vec3(0.5, 1, 0.2).normalized(), angle);
     const VoxelPyramid pyramid = build_pyramid(voxelize(mesh, {.resolution = 30}), 3);
-    for (const PyramidLevel& level : pyramid.levels)
+    for (std::size_t l = 0; l < pyramid.levels.size(); ++l) {
+        const PyramidLevel& level = pyramid.levels[l];
+        const float voxels_per_cell = std::exp2(static_cast<float>(l));
         for (VoxelIndex v = 0; v < level.size(); ++v)
             for (const VoxelIndex w : neighbors_of(level, v))
-                REQUIRE((offset_between(level, v, w) - (level.positions[w] - level.positions[v])).norm() < 1e-3F);
+                REQUIRE(
+                    (voxels_per_cell * offset_between(level, v, w) - (level.positions[w] - level.positions[v])).norm() <
+                    1e-3F * voxels_per_cell);
+    }
 }
 
 TEST_CASE("neighbourhoods: on a sphere the offset is the arc of the great circle", "[pyramid][property]") {
@@ -327,7 +395,7 @@ TEST_CASE("neighbourhoods: on a sphere the offset is the arc of the great circle
                 const Vec3 b = (level.positions[w].cast<double>() - center).normalized();
                 const double arc = std::acos(std::clamp(a.dot(b), -1.0, 1.0));
                 const Vec3 along = (b - a * a.dot(b)).normalized();
-                const Vec3 offset = offset_between(level, v, w).cast<double>();
+                const Vec3 offset = std::exp2(static_cast<double>(l)) * offset_between(level, v, w).cast<double>();
                 const double error = (offset - radius * arc * along).norm();
                 worst = std::max(worst, error);
                 sum += error;
@@ -399,9 +467,11 @@ TEST_CASE("build_pyramid: gives the same pyramid on any number of threads", "[py
                 CHECK(a.adjacency.neighbor == b.adjacency.neighbor);
                 CHECK(a.parent == b.parent);
                 CHECK(a.children == b.children);
-                CHECK(a.neighborhoods.neighbor == b.neighborhoods.neighbor);
-                CHECK(a.neighborhoods.offset == b.neighborhoods.offset);
-                CHECK(a.neighborhoods.reverse == b.neighborhoods.reverse);
+                CHECK(a.neighborhoods.first == b.neighborhoods.first);
+                CHECK(a.neighborhoods.count == b.neighborhoods.count);
+                REQUIRE(a.neighborhoods.blocks.size() == b.neighborhoods.blocks.size());
+                CHECK(std::memcmp(a.neighborhoods.blocks.data(), b.neighborhoods.blocks.data(),
+                                  a.neighborhoods.blocks.size() * sizeof(NeighborBlock)) == 0);
             }
         }
     }

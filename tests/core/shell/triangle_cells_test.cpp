@@ -124,7 +124,8 @@ TEST_CASE("cut_triangle: finds every cell of the grid that passes the test and n
     }
 }
 
-TEST_CASE("cut_triangle: the areas of the patches add up to the triangle", "[shell][property]") {
+TEST_CASE("cut_triangle: the areas of the patches add up to the triangle, and so do their centres",
+          "[shell][property]") {
     const VoxelCoord extent = {9, 9, 9};
     for (std::uint32_t item = 0; item < 100; ++item) {
         CAPTURE(item);
@@ -134,8 +135,15 @@ TEST_CASE("cut_triangle: the areas of the patches add up to the triangle", "[she
             for (Vec3& p : t) p[static_cast<Eigen::Index>(item % 2)] = 4.0;
         const double whole = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
         double sum = 0.0;
-        for (const Patch& patch : cut(t, extent)) sum += static_cast<double>(patch.area);
+        Vec3 moment = Vec3::Zero();
+        for (const Patch& patch : cut(t, extent)) {
+            sum += static_cast<double>(patch.area);
+            moment += static_cast<double>(patch.area) *
+                      (center_of(cell_of(patch, extent[0])) + patch.centroid.cast<double>());
+            CHECK(patch.centroid.cwiseAbs().maxCoeff() < 0.5F + 1e-6F);
+        }
         CHECK(sum == Approx(whole).epsilon(1e-5).margin(1e-5));
+        CHECK((moment - whole * (t[0] + t[1] + t[2]) / 3.0).norm() < 1e-4 * (1.0 + moment.norm()));
     }
 }
 

@@ -232,7 +232,34 @@ TEST_CASE("voxelize: the areas of all entries add up to the surface", "[shell][p
         double sum = 0.0;
         for (const float a : shell.area_mm2) sum += static_cast<double>(a);
         CHECK(sum == Approx(area_mm2(mesh)).epsilon(1e-5));
+        // Seen along the normal an area is no larger; the centre of all is that of the mesh.
+        Vec3 moment = Vec3::Zero(), expected = Vec3::Zero();
+        for (std::size_t v = 0; v < shell.size(); ++v) {
+            CHECK(shell.facing_area_mm2[v] <= shell.area_mm2[v] * (1.0F + 1e-5F));
+            moment += static_cast<double>(shell.area_mm2[v]) *
+                      (shell.grid.origin_mm + shell.grid.voxel_mm * shell.centroids_voxels[v].cast<double>());
+        }
+        for (const Triangle& t : mesh.triangles) {
+            const Vec3 &a = mesh.positions_mm[t[0]], &b = mesh.positions_mm[t[1]], &c = mesh.positions_mm[t[2]];
+            expected += 0.5 * (b - a).cross(c - a).norm() * (a + b + c) / 3.0;
+        }
+        CHECK((moment - expected).norm() < 1e-4 * shell.grid.voxel_mm * (1.0 + sum) * 40);
     }
+}
+
+TEST_CASE("voxelize: the facing area is the length of the sum of areas", "[shell]") {
+    // In a flat wall all of it, around the edge of a box less.
+    const SurfaceVoxels shell = voxelize(make_box({0, 0, 0}, {10, 10, 10}), {.resolution = 10});
+    std::size_t flat = 0, bent = 0;
+    for (std::size_t v = 0; v < shell.size(); ++v) {
+        const float share = shell.facing_area_mm2[v] / shell.area_mm2[v];
+        const bool along_axis = shell.normals[v].cwiseAbs().maxCoeff() > 0.999F;
+        ++(along_axis ? flat : bent);
+        if (along_axis) CHECK(share == Approx(1.0F));
+        if (!along_axis) CHECK(share < 0.8F);
+    }
+    CHECK(flat > 100);
+    CHECK(bent > 50);
 }
 
 TEST_CASE("voxelize: a connected surface gives a connected shell, and separate ones stay separate",
@@ -467,6 +494,24 @@ TEST_CASE("voxelize: the outer faces of a box take one layer each at any size", 
         // Every corner of the box is at least a quarter of a voxel inside the grid.
         CHECK(shell.grid.origin_mm[2] <= -0.25 + 1e-12);
         CHECK(shell.grid.origin_mm[2] + shell.grid.extent[2] >= height + 0.25 - 1e-12);
+    }
+}
+
+TEST_CASE("voxelize: with halvings, the cells that hold a voxel of the full grid and no others", "[shell][property]") {
+    for (const auto& [name, mesh] : assorted_meshes()) {
+        for (const int resolution : {30, 41}) {
+            const SurfaceVoxels full = voxelize(mesh, {.resolution = resolution});
+            for (const int halvings : {1, 2}) {
+                CAPTURE(name, resolution, halvings);
+                const SurfaceVoxels coarse = voxelize(mesh, {.resolution = resolution, .halvings = halvings});
+                CHECK(coarse.grid.origin_mm == full.grid.origin_mm);
+                CHECK(coarse.grid.voxel_mm == full.grid.voxel_mm * (1 << halvings));
+                std::set<VoxelCoord> expected;
+                for (const VoxelCoord& c : full.coords)
+                    expected.insert({c[0] >> halvings, c[1] >> halvings, c[2] >> halvings});
+                CHECK(std::set<VoxelCoord>(coarse.coords.begin(), coarse.coords.end()) == expected);
+            }
+        }
     }
 }
 

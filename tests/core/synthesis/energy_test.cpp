@@ -33,8 +33,7 @@ class PaperEnergy {
     [[nodiscard]] double total(bool per_neighbor) const {
         double sum = 0;
         for (VoxelIndex v = 0; v < level_.size(); ++v) {
-            const double n =
-                std::max(1.0, static_cast<double>(level_.neighborhoods.first[v + 1] - level_.neighborhoods.first[v]));
+            const double n = std::max(1.0, static_cast<double>(level_.neighborhoods.count[v]));
             sum += transition(v) / (per_neighbor ? n : 1.0) + distortion(v);
         }
         return sum;
@@ -53,11 +52,11 @@ class PaperEnergy {
     [[nodiscard]] double transition(VoxelIndex v) const {
         const Neighborhoods& n = level_.neighborhoods;
         double sum = 0;
-        for (std::uint32_t i = n.first[v]; i < n.first[v + 1]; ++i) {
-            const VoxelIndex w = n.neighbor[i];
+        for (std::uint32_t i = 0; i < n.count[v]; ++i) {
+            const VoxelIndex w = n.neighbor(v, i);
             const Vec3f here = Vec3f::Zero();
-            sum += (color(v, here) - color(w, n.offset[n.reverse[i]])).squaredNorm();
-            sum += (color(v, n.offset[i]) - color(w, here)).squaredNorm();
+            sum += (color(v, here) - color(w, n.way_back(v, i))).squaredNorm();
+            sum += (color(v, n.way_out(v, i)) - color(w, here)).squaredNorm();
         }
         return sum;
     }
@@ -118,9 +117,11 @@ TEST_CASE("energy: bounds of a random candidate stay below its energy", "[synthe
         const Choice& own = choices[v];
         const Energy full = energy.of({own.label, own.part, own.texel}, kNoEnergy);
         const PlaneIndex plane = problem.transforms.plane_of(own.label.linear);
-        REQUIRE(energy.bound(own.texel) >= 0);
-        REQUIRE(energy.bound(own.texel) <= energy.bound(own.texel, plane));
-        REQUIRE(energy.bound(own.texel, plane) <= full);
+        const Energy half = energy.first_half(own.texel);
+        REQUIRE(half >= 0);
+        REQUIRE(half <= energy.bound(own.texel, half));
+        REQUIRE(energy.bound(own.texel, half) <= energy.bound(own.texel, half, plane));
+        REQUIRE(energy.bound(own.texel, half, plane) <= full);
         REQUIRE(energy.of({own.label, own.part, own.texel}, full) == full);
         REQUIRE(energy.of({own.label, own.part, own.texel}, full - 1) > full - 1);
     }
@@ -158,12 +159,11 @@ TEST_CASE("energy: a transported label shows the neighbour what it shows, on the
     const Choices choices = random_labels(problem, level);
     const Neighborhoods& n = level.shell->neighborhoods;
     for (VoxelIndex v = 0; v < level.size(); v += 5) {
-        const NeighborBlock& block = level.neighbors.blocks[level.neighbors.first[v]];
+        const NeighborBlock& block = *n.of(v);
         const Choice& from = choices[block.neighbor[0]];
-        REQUIRE(block.neighbor[0] == n.neighbor[n.first[v]]);
         const Candidate moved = transported_candidate(problem, level, v, from, {block.out_xy[0], low16(block.z[0])});
         REQUIRE(problem.transforms.plane_of(moved.label.linear) == level.best_plane[v]);
-        const Vec3f& offset = n.offset[n.first[v]];
+        const Vec3f offset = n.way_out(v, 0);
         const double u =
             moved.texel.u / 4294967296.0 * e.width + static_cast<double>(problem.map.u_vector(moved.part).dot(offset));
         const double w =

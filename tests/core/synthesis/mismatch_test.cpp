@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "core/base/avx2.h"
+
 namespace fretwork {
 namespace {
 
@@ -25,7 +27,8 @@ struct MismatchCase {
                 b.out_xy[lane] = offsets(), b.back_xy[lane] = offsets(), b.z[lane] = offsets();
                 b.neighbor[lane] = draw() % 97;
             }
-        level = {texels.data(), width, height, static_cast<int>(draw() % 12), static_cast<int>(draw() % 12)};
+        const auto shift = [&] { return static_cast<int>(draw() % 12); };
+        level = {texels.data(), width, height, shift(), shift(), shift(), shift()};
     }
     std::uint32_t draw() { return static_cast<std::uint32_t>(rng()); }
     std::int32_t signed_draw() { return pack16(component(23000), component(23000)); }
@@ -49,7 +52,7 @@ struct Size {
 TEST_CASE("mismatch: both instruction sets give the same integers", "[synthesis][property]") {
     if (!machine_has_avx2()) return;
     const Size size = GENERATE(Size{128, 128, 39}, Size{37, 91, 1}, Size{1024, 5, 8}, Size{200, 300, 124},
-                               Size{64, 64, kMaxNeighbors});
+                               Size{64, 64, Neighborhoods::kMost});
     const unsigned seed = GENERATE(range(1u, 6u));
     CAPTURE(size.width, size.height, size.neighbors, seed);
     MismatchCase c(size.width, size.height, size.neighbors, seed);
@@ -63,6 +66,9 @@ TEST_CASE("mismatch: both instruction sets give the same integers", "[synthesis]
         REQUIRE(plain.color[i] == fast.color[i]);
         REQUIRE(plain.linear[i] == fast.linear[i]);
         REQUIRE(plain.origin[i] == fast.origin[i]);
+        REQUIRE(plain.u_xy[i] == fast.u_xy[i]);
+        REQUIRE(plain.v_xy[i] == fast.v_xy[i]);
+        REQUIRE(plain.uv_z[i] == fast.uv_z[i]);
     }
 
     std::vector<CoherentLabel> a(c.count), b(c.count);
@@ -77,6 +83,20 @@ TEST_CASE("mismatch: both instruction sets give the same integers", "[synthesis]
         votes += a[i].votes;
     }
     CHECK(votes == c.count);
+
+    const auto labels = static_cast<std::uint32_t>(a.size());
+    const FixedPoint point{c.signed_draw(), c.signed_draw(), c.signed_draw()};
+    ScreenedTexels by_plain, by_fast;
+    kPortableMismatch.project_labels(c.level, plain, point, a.data(), labels, by_plain);
+    kPortableMismatch.first_halves(c.level, plain, c.count, labels, by_plain);
+    kAvx2Mismatch.project_labels(c.level, fast, point, b.data(), labels, by_fast);
+    kAvx2Mismatch.first_halves(c.level, fast, c.count, labels, by_fast);
+    for (std::uint32_t i = 0; i < labels; ++i) {
+        REQUIRE(by_plain.u[i] == by_fast.u[i]);
+        REQUIRE(by_plain.v[i] == by_fast.v[i]);
+        REQUIRE(by_plain.first_half[i] == by_fast.first_half[i]);
+        REQUIRE(by_plain.first_half[i] >= 0);
+    }
 
     for (int trial = 0; trial < 20; ++trial) {
         const TexelPosition texel{c.draw(), c.draw()};
