@@ -398,8 +398,9 @@ int main(int argc, char** argv) {
         const std::vector<BenchModel> curved = curved_models(options);
         std::vector<ExemplarResult> results;
         for (const BenchExemplar& e : exemplars(options)) {
-            fmt::print(stderr, "{}\n", e.name);
             results.push_back(measure(options, e, plate, curved));
+            const Likeness ours = results.back().flat.at("default").mean();
+            fmt::print(stderr, "{}: patches {:.3f}, worst seams {:.3f}\n", e.name, ours.patches(), ours.worst_seam);
         }
         if (results.empty()) throw std::runtime_error("no exemplar of that name");
         const std::string text = document(options, results, curved);
