@@ -36,7 +36,7 @@ constexpr double kFlattestCut = 2e-3;  // 4 sqrt 3 area / sum of squared sides
 
 /// Least share of an edge between a vertex on a border and the edge's ends.
 constexpr double kFromEnds = 0.05;
-constexpr int kSearchSteps = 4;
+constexpr int kSearchSteps = 3;
 
 int distance2(const Rgb8& a, const Rgb8& b) {
     int sum = 0;
@@ -237,8 +237,7 @@ class AreaCutter {
         for (const Triangle& t : mesh_.triangles)
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-                // Each edge of a closed surface runs up in one of its triangles.
-                if (a < b && area(a) != area(b)) edges_.push_back(edge(a, b));
+                if (area(a) != area(b)) edges_.push_back(edge(a, b));
             }
         std::sort(edges_.begin(), edges_.end());
         edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());

@@ -14,7 +14,7 @@ namespace fretwork {
 namespace {
 
 /// Shares of the tolerance that the sweeps of a pass allow, so that what costs nothing goes first.
-constexpr std::array<double, 6> kSweeps = {0.1, 0.3, 0.7, 1.0, 1.0, 1.0};
+constexpr std::array<double, 4> kSweeps = {0.15, 0.5, 1.0, 1.0};
 constexpr int kPasses = 3;
 constexpr int kDoublings = 7;
 

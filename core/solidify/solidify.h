@@ -23,7 +23,7 @@ struct SolidifySettings {
     double simplify_tolerance_voxels = 0.1;  ///< 0 keeps every triangle of the lattice
     /// 0: as few as the tolerance allows; else no more than this where validity allows.
     std::size_t target_triangles = 0;
-    bool keep_colors = true;  ///< triangles stay small where the pattern's colours change
+    bool keep_colors = true;  ///< borders between the colours of the pattern become edges of the mesh
 };
 
 struct CarvedMesh {

@@ -44,8 +44,7 @@ void check_wall(const CarveResult& result, const PropertyModel& model) {
         deepest = std::max(deepest, d);
         highest = std::min(highest, d);
     }
-    // Where a hole meets the inner face the corner may stay off both by some half a voxel.
-    CHECK(deepest <= wall + 0.65 * voxel);
+    CHECK(deepest <= wall + 0.35 * voxel);
     CHECK(deepest >= wall - 0.35 * voxel);
     CHECK(highest >= -0.35 * voxel);
 }

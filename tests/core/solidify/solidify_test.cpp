@@ -257,6 +257,29 @@ TEST_CASE("solidify: triangles carry the colour and the voxel of their place", "
     }
 }
 
+TEST_CASE("solidify: a border between colours runs where it was drawn", "[solidify]") {
+    const TriangleMesh sphere = testing::make_icosphere(10.0, 4);
+    const SurfaceVoxels shell = voxelize(sphere, {.resolution = 30});
+    const double voxel = shell.grid.voxel_mm;
+    const CarvedMesh carved = solidify(sphere, shell, pattern_of(no_holes()), {2.0, WallSide::kInward, 0.1, 0});
+    // Simplified triangles span several voxels, yet none reaches a voxel over the border.
+    double longest = 0.0;
+    std::size_t red = 0;
+    for (std::size_t i = 0; i < carved.mesh.triangles.size(); ++i) {
+        const Triangle& t = carved.mesh.triangles[i];
+        const bool is_red = carved.triangle_colors[i] == kRed;
+        if (!is_red) REQUIRE(carved.triangle_colors[i] == kBlue);
+        red += is_red ? 1 : 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3& p = carved.mesh.positions_mm[t[k]];
+            longest = std::max(longest, (p - carved.mesh.positions_mm[t[(k + 1) % 3]]).norm());
+            CHECK((is_red ? p.z() : -p.z()) < voxel);
+        }
+    }
+    CHECK(longest > 3.0 * voxel);
+    CHECK(2 * red == Approx(carved.mesh.triangles.size()).epsilon(0.2));
+}
+
 TEST_CASE("solidify: loose pieces go and are counted", "[solidify]") {
     const TriangleMesh sphere = testing::make_icosphere(10.0, 4);
     const SurfaceVoxels shell = voxelize(sphere, {.resolution = 30});
