@@ -42,7 +42,7 @@ int choose_resolution(const ShellOptions& shell, double longest_side_mm) {
 int choose_halvings(const Settings& settings, const SurfaceFacts& surface, const ResolvedSettings& r) {
     if (settings.shell.halvings) return *settings.shell.halvings;
     if (settings.synthesis.preset != Preset::kDraft) return 0;
-    constexpr double most_faces = 30000.0;  // of cells, as many as cover the surface
+    constexpr double most_faces = 14000.0;  // of cells, as many as cover the surface
     constexpr int least_resolution = 48;
     int halvings = 0;
     double voxel_mm = r.voxel_mm;

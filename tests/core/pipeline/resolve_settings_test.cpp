@@ -53,7 +53,7 @@ TEST_CASE("resolve: resolution is a matter of quality, not of design", "[pipelin
 }
 
 TEST_CASE("resolve: a draft keeps the design of its full run and coarsens the grid as far as it takes", "[pipeline]") {
-    // 30,000 voxels of surface at most: a sphere of 100 mm has 206,000 at 256, and 51,000 at half of that.
+    // 14,000 faces of surface at most: a sphere of 100 mm has 206,000 at 256, 51,000 at half and 13,000 at a quarter.
     const SurfaceFacts sphere{100.0, false, 31400.0};
     const auto resolve_sphere = [&](std::initializer_list<const char*> assignments) {
         return resolve_settings(with(assignments), sphere, kExemplar);
