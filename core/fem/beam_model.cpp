@@ -42,6 +42,7 @@ struct BeamModel::Impl {
     BeamModelSettings settings;
     BeamWedgeMesh mesh;
     std::optional<BeamElements> elements;
+    BeamWidths widths;
     std::vector<double> width_factors;  ///< per edge
     std::vector<std::unique_ptr<Supports>> supports;
 
@@ -51,11 +52,13 @@ struct BeamModel::Impl {
     void build_geometry(const SurfaceVoxels& shell, const SolidStates& solid);
     void add_loads(const std::vector<SampleLoads>& cases);
     [[nodiscard]] std::vector<std::uint8_t> fixed_nodes(const SampleLoads& loads) const;
-    void take_scores(const Supports& group, const Eigen::MatrixXd& u, std::vector<double>& scores_pa) const;
+    void smooth_slivers(std::span<const EdgeState> states, std::vector<double>& scores_pa) const;
+    void take_scores(const Supports& group, const Eigen::MatrixXd& u, std::span<const EdgeState> states,
+                     std::vector<double>& scores_pa) const;
 };
 
 void BeamModel::Impl::build_geometry(const SurfaceVoxels& shell, const SolidStates& solid) {
-    const BeamWidths widths = beam_widths(shell, solid, graph, settings.bridge_half_width_voxels);
+    widths = beam_widths(shell, solid, graph, settings.bridge_half_width_voxels);
     BeamGeometry geometry;
     geometry.thickness_mm = settings.thickness_mm;
     mesh = build_beam_wedge_mesh(shell, graph, widths.at_sample_voxels, geometry);
@@ -121,18 +124,39 @@ BeamModel::~BeamModel() = default;
 BeamModel::BeamModel(BeamModel&&) noexcept = default;
 BeamModel& BeamModel::operator=(BeamModel&&) noexcept = default;
 
-void BeamModel::Impl::take_scores(const Supports& group, const Eigen::MatrixXd& u,
+void BeamModel::Impl::take_scores(const Supports& group, const Eigen::MatrixXd& u, std::span<const EdgeState> states,
                                   std::vector<double>& scores_pa) const {
-    parallel_for(mesh.beams.size(), 64, [&](std::size_t e) {
-        for (Eigen::Index column = 0; column < u.cols(); ++column) {
+    std::vector<double> of_case(scores_pa.size());
+    for (Eigen::Index column = 0; column < u.cols(); ++column) {
+        parallel_for(mesh.beams.size(), 64, [&](std::size_t e) {
             Eigen::Matrix<double, 24, 1> moved = Eigen::Matrix<double, 24, 1>::Zero();
             for (int n = 0; n < 8; ++n) {
                 const std::int64_t dof = group.pattern.dof(mesh.beams[e].nodes[static_cast<std::size_t>(n)]);
                 if (dof != StiffnessPattern::kFixed) moved.segment<3>(3 * n) = u.block<3, 1>(dof, column);
             }
-            scores_pa[e] = std::max(scores_pa[e], 1e6 * elements->beam_score_mpa(e, moved));
+            of_case[e] = 1e6 * elements->beam_score_mpa(e, moved);
+        });
+        smooth_slivers(states, of_case);
+        for (std::size_t e = 0; e < scores_pa.size(); ++e) scores_pa[e] = std::max(scores_pa[e], of_case[e]);
+    }
+}
+
+void BeamModel::Impl::smooth_slivers(std::span<const EdgeState> states, std::vector<double>& scores_pa) const {
+    std::vector<double> weighted(graph.samples.size(), 0.0);
+    std::vector<double> weight(graph.samples.size(), 0.0);
+    for (EdgeIndex e = 0; e < states.size(); ++e) {
+        if (states[e] == EdgeState::kEmpty || widths.is_sliver[e] != 0) continue;
+        for (const SampleIndex s : {graph.edges[e].a, graph.edges[e].b}) {
+            weighted[s] += scores_pa[e] * widths.along_edge_mm[e];
+            weight[s] += widths.along_edge_mm[e];
         }
-    });
+    }
+    for (EdgeIndex e = 0; e < states.size(); ++e) {
+        const SampleIndex a = graph.edges[e].a;
+        const SampleIndex b = graph.edges[e].b;
+        if (widths.is_sliver[e] != 0 && weight[a] + weight[b] > 0.0)
+            scores_pa[e] = (weighted[a] + weighted[b]) / (weight[a] + weight[b]);
+    }
 }
 
 std::vector<double> BeamModel::edge_scores_pa(std::span<const EdgeState> states, const RunControl& run) {
@@ -145,9 +169,23 @@ std::vector<double> BeamModel::edge_scores_pa(std::span<const EdgeState> states,
         impl_->elements->assemble(group->pattern, factors, group->values);
         group->solver->factorize(group->values);
         run.throw_if_stopped();
-        impl_->take_scores(*group, group->solver->solve(group->loads_n), scores_pa);
+        impl_->take_scores(*group, group->solver->solve(group->loads_n), states, scores_pa);
     }
     return scores_pa;
+}
+
+const std::vector<float>& BeamModel::half_width_voxels() const {
+    return impl_->widths.half_width_voxels;
+}
+
+double BeamModel::width_mm(EdgeIndex e) const {
+    return impl_->widths.along_edge_mm[e];
+}
+
+void BeamModel::widen(EdgeIndex e, double least_mm) {
+    double& width_mm = impl_->widths.along_edge_mm[e];
+    width_mm = std::max(width_mm, least_mm);
+    impl_->width_factors[e] = width_factor(width_mm, impl_->mesh.beams[e].width_mm);
 }
 
 std::size_t BeamModel::degrees_of_freedom() const {

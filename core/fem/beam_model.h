@@ -37,11 +37,22 @@ class BeamModel {
 
     /// Per edge the largest |s1| + |s2| + |s3| over its Gauss points and over all load cases, in Pa. The
     /// stress is that of the full material under the strain found (sigma = E B u), for empty edges too:
-    /// what they would feel if they were not there to carry anything.
+    /// what they would feel if they were not there to carry anything. A solid sliver (`beam_widths.h`) stands for no
+    /// section; its score in each load case is the mean of the solid edges at its two ends, weighted by
+    /// their widths.
     /// \param states  one per edge; need not be those of the graph
     /// Cost  one factorisation per set of supports, one solution per load case.
     /// \throws SolverFailure  the equations are singular.
     std::vector<double> edge_scores_pa(std::span<const EdgeState> states, const RunControl& run = {});
+
+    /// Half of the width of the pattern around each voxel as it was when the model was built (`pattern_width.h`).
+    [[nodiscard]] const std::vector<float>& half_width_voxels() const;
+
+    /// Width of the material along an edge, mm.
+    [[nodiscard]] double width_mm(EdgeIndex e) const;
+
+    /// From now on the material along an edge is at least `least_mm` wide.
+    void widen(EdgeIndex e, double least_mm);
 
     [[nodiscard]] std::size_t degrees_of_freedom() const;
     [[nodiscard]] std::size_t folded_beams() const;

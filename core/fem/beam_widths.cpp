@@ -18,6 +18,9 @@ constexpr double kWidestHalfVoxels = 1000.0;
 /// when each bar has 1.5 times the width of its border: k = E t w / L with w = L / sqrt 3 makes a sheet of 2/3 E.
 constexpr double kNetFactor = 1.5;
 
+/// Among equilateral triangles the width is 0.87 of the length.
+constexpr double kSliverShare = 0.25;
+
 double harmonic_half_width(std::span<const VoxelIndex> path, const std::vector<float>& half_width) {
     double sum = 0.0;
     for (const VoxelIndex v : path) sum += 1.0 / std::max(0.5, static_cast<double>(half_width[v]));
@@ -62,23 +65,33 @@ std::vector<double> border_lengths_mm(const SurfaceVoxels& shell, const SolidSta
     return border_mm;
 }
 
+bool is_sliver(const AbstractGraph& graph, EdgeIndex e, const std::vector<float>& half_width, double width_voxels) {
+    float narrowest = half_width[graph.voxel_path(e).front()];
+    for (const VoxelIndex v : graph.voxel_path(e)) narrowest = std::min(narrowest, half_width[v]);
+    return width_voxels < static_cast<double>(narrowest) &&
+           width_voxels < kSliverShare * static_cast<double>(graph.edges[e].length_voxels);
+}
+
 }  // namespace
 
 BeamWidths beam_widths(const SurfaceVoxels& shell, const SolidStates& solid, const AbstractGraph& graph,
                        double bridge_half_width_voxels) {
-    const std::vector<float> half_width = pattern_half_width(shell.adjacency, solid, kWidestHalfVoxels);
+    std::vector<float> half_width = pattern_half_width(shell.adjacency, solid, kWidestHalfVoxels);
     const std::vector<double> border_mm = border_lengths_mm(shell, solid, graph);
     const double voxel_mm = shell.grid.voxel_mm;
     BeamWidths widths;
+    widths.is_sliver.assign(graph.edges.size(), 0);
     for (const VoxelIndex v : graph.samples) widths.at_sample_voxels.push_back(std::max(0.5f, half_width[v]));
     for (EdgeIndex e = 0; e < graph.edges.size(); ++e) {
         double width_mm = 2.0 * bridge_half_width_voxels * voxel_mm;
         if (graph.edges[e].state == EdgeState::kSolid) {
             const double along = 2.0 * harmonic_half_width(graph.voxel_path(e), half_width) * voxel_mm;
             width_mm = std::max(std::min(along, kNetFactor * border_mm[e]), 0.5 * voxel_mm);
+            widths.is_sliver[e] = is_sliver(graph, e, half_width, width_mm / voxel_mm) ? 1 : 0;
         }
         widths.along_edge_mm.push_back(width_mm);
     }
+    widths.half_width_voxels = std::move(half_width);
     return widths;
 }
 

@@ -52,7 +52,7 @@ struct ComponentSamples {
 /// Bisection on the radius; while one side is open, the count is taken to fall with the power 1.5 of
 /// the radius, between that of a strand (1) and that of a surface (2).
 ComponentSamples sample_component(ForestGrower& grower, const std::vector<VoxelIndex>& order, std::size_t target,
-                                  double tolerance, const RunControl& run) {
+                                  const SampleSettings& settings, double start_radius, const RunControl& run) {
     constexpr int kTries = 14;
     const std::size_t most = target + target / 2 + 8;
     const auto miss = [&](std::size_t count) {
@@ -63,6 +63,7 @@ ComponentSamples sample_component(ForestGrower& grower, const std::vector<VoxelI
     // Random sequential discs of distance r hold 0.7 / r^2 centres per unit area.
     double radius = std::sqrt(0.7 * static_cast<double>(order.size()) / static_cast<double>(target));
     radius = std::max(radius, 0.5);
+    if (start_radius > 0.0) radius = start_radius;
     ComponentSamples best;
     for (int attempt = 0; attempt < kTries; ++attempt) {
         std::vector<VoxelIndex> samples = throw_darts(grower, order, to_distance(radius), most, run);
@@ -70,7 +71,8 @@ ComponentSamples sample_component(ForestGrower& grower, const std::vector<VoxelI
         const bool whole = count <= most;
         if (whole && (best.voxels.empty() || miss(count) < miss(best.voxels.size())))
             best = {std::move(samples), radius};
-        if (whole && miss(count) <= tolerance) break;
+        const bool is_start = start_radius > 0.0 && attempt == 0;
+        if (whole && miss(count) <= (is_start ? settings.start_tolerance : settings.tolerance)) break;
         (count > target ? low : high) = radius;
         if (high > 0.0 && high - low < 0.02 * high) break;
         const double guess = radius * std::pow(static_cast<double>(count) / static_cast<double>(target), 1.0 / 1.5);
@@ -109,7 +111,8 @@ Samples poisson_samples(const Adjacency& graph, const ShellComponents& shell_com
         if (order[c].empty()) continue;
         const std::size_t share = settings.target * order[c].size() / solid_voxels;
         const std::size_t target = std::min(std::max({share, settings.least, std::size_t{1}}), order[c].size());
-        ComponentSamples part = sample_component(grower, order[c], target, settings.tolerance, run);
+        const double start_radius = settings.start_radius_voxels.empty() ? 0.0 : settings.start_radius_voxels[c];
+        ComponentSamples part = sample_component(grower, order[c], target, settings, start_radius, run);
         result.voxels.insert(result.voxels.end(), part.voxels.begin(), part.voxels.end());
         result.radius_voxels[c] = part.radius_voxels;
     }

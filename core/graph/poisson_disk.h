@@ -16,6 +16,9 @@ struct SampleSettings {
     std::size_t least = 24;     ///< wanted on each component of the shell, if it has that many solid voxels
     double tolerance = 0.05;    ///< accepted departure from the target, relative
     std::uint64_t seed = 1;
+    /// Radius to try first, per component of the shell: that of an earlier, similar pattern. May be empty.
+    std::vector<double> start_radius_voxels;
+    double start_tolerance = 0.15;  ///< accepted for it, relative
 };
 
 struct Samples {

@@ -58,8 +58,15 @@ PaintedVoxels BridgePainter::paint(std::span<const VoxelIndex> path, DilatedPart
     std::vector<VoxelIndex> centers(path.begin(), path.end());
     if (part == DilatedPart::kGap) std::erase_if(centers, [&](VoxelIndex v) { return solid[v] == SolidState::kSolid; });
     PaintedVoxels painted;
-    const float least_cosine = part == DilatedPart::kGap ? kSameSheetCosine : kAnyDirection;
+    const float least_cosine = part == DilatedPart::kWholePath ? kAnyDirection : kSameSheetCosine;
     for (const VoxelIndex center : centers) flood(center, radius_voxels_, least_cosine, solid, painted);
+    sort_once(painted);
+    return painted;
+}
+
+PaintedVoxels BridgePainter::paint_strand(std::span<const VoxelIndex> path, double radius_voxels, SolidStates& solid) {
+    PaintedVoxels painted;
+    for (const VoxelIndex center : path) flood(center, radius_voxels, kSameSheetCosine, solid, painted);
     sort_once(painted);
     return painted;
 }

@@ -33,6 +33,9 @@ class BridgePainter {
     /// sheet, however near, is never painted.
     PaintedVoxels paint(std::span<const VoxelIndex> path, DilatedPart part, SolidStates& solid);
 
+    /// Makes the pattern along `path` at least `radius_voxels` wide to either side, on its own sheet.
+    PaintedVoxels paint_strand(std::span<const VoxelIndex> path, double radius_voxels, SolidStates& solid);
+
     /// The same around one voxel, with a radius of its own.
     PaintedVoxels paint_disc(VoxelIndex center, double radius_voxels, SolidStates& solid);
 

@@ -15,6 +15,21 @@ namespace {
 /// "The radius of cancellation is twice the length of the already inserted edge."
 constexpr double kCancelFactor = 2.0;
 
+/// Reinforcement goes on to this share of the limit: the next turn looks at other samples and finds up to half more.
+constexpr double kAim = 0.65;
+
+/// An edge far above the aim is not widened by more than this at once, since others will take a share of its load.
+constexpr double kMostWidening = 2.0;
+
+/// For each edge above the aim around which everything is solid already.
+constexpr std::size_t kBridgesPerStuckEdge = 2;
+
+double harmonic_half_width(std::span<const VoxelIndex> path, const std::vector<float>& half_width) {
+    double sum = 0.0;
+    for (const VoxelIndex v : path) sum += 1.0 / std::max(0.5, static_cast<double>(half_width[v]));
+    return static_cast<double>(path.size()) / sum;
+}
+
 /// Longest side of each component's box, in voxels.
 std::vector<double> component_extents(const SurfaceVoxels& shell, const ShellComponents& components) {
     constexpr auto kLow = std::numeric_limits<std::int32_t>::min();
@@ -37,14 +52,16 @@ std::vector<double> component_extents(const SurfaceVoxels& shell, const ShellCom
 }  // namespace
 
 ReinforcementTurn::ReinforcementTurn(const ReinforceContext& context, BridgePainter& painter, SolidStates& state,
-                                     const RunControl& run)
+                                     int iteration, std::vector<double>& sample_radius, const RunControl& run)
     : context_(context), painter_(painter), state_(state) {
     const SurfaceVoxels& shell = context.shell;
     const ReinforceSettings& settings = context.settings;
     SampleSettings sampling;
     sampling.target = static_cast<std::size_t>(settings.samples);
-    sampling.seed = settings.seed;
+    sampling.seed = settings.seed + static_cast<std::uint64_t>(iteration) - 1;
+    sampling.start_radius_voxels = sample_radius;
     Samples samples = poisson_samples(shell.adjacency, context.shell_components, state, sampling, run);
+    sample_radius = samples.radius_voxels;
     run.checkpoint("structure", 0.1);
     const bool printed = settings.rules == ReinforceRules::kPaper;
     graph_ = connect_samples(shell.adjacency, state, std::move(samples.voxels),
@@ -120,26 +137,69 @@ void ReinforcementTurn::stress_as_printed(double limit_pa, const RunControl& run
     }
 }
 
+std::vector<EdgeIndex> ReinforcementTurn::solid_edges_above(double score_pa) const {
+    std::vector<EdgeIndex> above;
+    for (EdgeIndex e = 0; e < states_.size(); ++e)
+        if (states_[e] == EdgeState::kSolid && scores_pa_[e] > score_pa) above.push_back(e);
+    std::ranges::sort(above, [&](EdgeIndex x, EdgeIndex y) {
+        return scores_pa_[x] != scores_pa_[y] ? scores_pa_[x] > scores_pa_[y] : x < y;
+    });
+    return above;
+}
+
+ReinforcementTurn::Widened ReinforcementTurn::widen_strand(EdgeIndex e, double factor, std::size_t& voxels_left) {
+    const std::vector<float>& half_width = model_->half_width_voxels();
+    const double bridge = context_.settings.pattern_radius_voxels;
+    double& half = strand_half_voxels_[e];
+    if (half < 0.0) half = harmonic_half_width(graph_.voxel_path(e), half_width);
+    const double wanted = std::min(half + 2.0 * bridge, std::max(bridge, half * factor));
+    std::vector<VoxelIndex> thin;
+    for (const VoxelIndex v : graph_.voxel_path(e))
+        if (static_cast<double>(half_width[v]) < wanted) thin.push_back(v);
+    const PaintedVoxels painted = painter_.paint_strand(thin, wanted, state_);
+    if (painted.added.size() > voxels_left) {
+        for (const VoxelIndex v : painted.added) state_[v] = SolidState::kEmpty;
+        out_of_budget_ = true;
+        return Widened::kNoBudget;
+    }
+    if (painted.added.empty()) return Widened::kNothingLeft;
+    voxels_left -= painted.added.size();
+    covered_.insert(covered_.end(), painted.covered.begin(), painted.covered.end());
+    // A strand gets the width that was painted; in a sheet, which many edges share, the edge's part grows alike.
+    const bool is_strand = half < bridge;
+    model_->widen(e, is_strand ? 2.0 * wanted * context_.shell.grid.voxel_mm : model_->width_mm(e) * wanted / half);
+    half = wanted;
+    bridges_.push_back({e, BridgeReason::kStress});
+    ++record_.bridges_stress;
+    return Widened::kYes;
+}
+
+bool ReinforcementTurn::widen_or_bridge(const std::vector<EdgeIndex>& over, double aim_pa, std::size_t& voxels_left) {
+    std::size_t stuck = 0;
+    for (const EdgeIndex e : over) {
+        const Widened widened = widen_strand(e, std::min(kMostWidening, scores_pa_[e] / aim_pa), voxels_left);
+        if (widened == Widened::kNoBudget) return false;
+        if (widened == Widened::kNothingLeft) ++stuck;
+    }
+    const std::size_t most =
+        std::min(kBridgesPerStuckEdge * stuck, 4 * static_cast<std::size_t>(context_.settings.batch));
+    const std::vector<EdgeIndex> taken = select_bridges(places_, scores_pa_, empty_edges(), most, kCancelFactor);
+    if (taken.empty() && stuck == over.size()) {
+        out_of_candidates_ = true;
+        return false;
+    }
+    return std::ranges::all_of(taken, [&](EdgeIndex e) { return paint_within(e, BridgeReason::kStress, voxels_left); });
+}
+
 void ReinforcementTurn::stress_within_budget(double limit_pa, int solutions, std::size_t& voxels_left,
                                              const RunControl& run) {
+    strand_half_voxels_.assign(states_.size(), -1.0);
     for (int solution = 0;; ++solution) {
-        const ScoreSummary summary = summarize_solid_scores(scores_pa_, states_);
-        if (summary.max_pa <= limit_pa) return;
-        // The farther from the limit, the larger the batch: one bridge for every three edges above it.
-        std::size_t above = 0;
-        for (std::size_t e = 0; e < states_.size(); ++e)
-            above += states_[e] == EdgeState::kSolid && scores_pa_[e] > limit_pa ? 1u : 0u;
-        const auto least = static_cast<std::size_t>(context_.settings.batch);
-        const std::size_t most = std::clamp(above / 3, least, 4 * least);
-        const std::vector<EdgeIndex> taken = select_bridges(places_, scores_pa_, empty_edges(), most, kCancelFactor);
-        if (taken.empty()) {
-            out_of_candidates_ = true;
-            return;
-        }
-        for (const EdgeIndex e : taken)
-            if (!paint_within(e, BridgeReason::kStress, voxels_left)) return;
+        met_ = solid_edges_above(limit_pa).empty();
+        const std::vector<EdgeIndex> over = solid_edges_above(kAim * limit_pa);
+        if (over.empty() || solution == solutions) return;
+        if (!widen_or_bridge(over, kAim * limit_pa, voxels_left)) return;
         close_filled_gaps();
-        if (solution + 1 == solutions) return;
         renew_scores(run);
     }
 }

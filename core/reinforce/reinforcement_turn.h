@@ -33,9 +33,13 @@ struct ReinforceContext {
 /// criterion after the other. Solid voxels are added to the pattern that was handed in.
 class ReinforcementTurn {
   public:
-    /// GENERATEABSTRACTGRAPH and the beam model. \param state  updated by bridges; must outlive the turn
-    ReinforcementTurn(const ReinforceContext& context, BridgePainter& painter, SolidStates& state,
-                      const RunControl& run);
+    /// GENERATEABSTRACTGRAPH and the beam model. Turns are sampled with seeds of their own, so that what one of them
+    /// has reinforced is judged at other places by the next.
+    /// \param state               updated by bridges; must outlive the turn
+    /// \param iteration           number of the turn
+    /// \param sample_radius       of the turn before, per component of the shell, or empty; replaced by this turn's
+    ReinforcementTurn(const ReinforceContext& context, BridgePainter& painter, SolidStates& state, int iteration,
+                      std::vector<double>& sample_radius, const RunControl& run);
 
     /// Scores of the pattern as it is now, into the record; the beam model is solved once. To be called first.
     void take_stock(const RunControl& run);
@@ -46,8 +50,9 @@ class ReinforcementTurn {
     /// As printed: bridges until no edge, empty ones included, is above `limit_pa` or none is empty.
     void stress_as_printed(double limit_pa, const RunControl& run);
 
-    /// At most `solutions` batches of bridges, until no solid edge is above `limit_pa`, candidates run out or
-    /// the next bridge does not fit the budget.
+    /// At most `solutions` times: solid edges above the aim, a share of `limit_pa`, are widened in proportion to their
+    /// score, as for a fully stressed design; where nothing is left to widen, bridges are built over the empty edges
+    /// of highest score. Ends when no solid edge is above the aim, candidates run out or the budget is spent.
     /// \param voxels_left  reduced by what is painted
     void stress_within_budget(double limit_pa, int solutions, std::size_t& voxels_left, const RunControl& run);
 
@@ -59,6 +64,8 @@ class ReinforcementTurn {
 
     [[nodiscard]] const ReinforceRecord& record() const { return record_; }
     [[nodiscard]] bool out_of_budget() const { return out_of_budget_; }
+    /// No solid edge is above the limit any more, as far as the model of this turn knows.
+    [[nodiscard]] bool met() const { return met_; }
     [[nodiscard]] bool out_of_candidates() const { return out_of_candidates_; }
     [[nodiscard]] std::size_t bridges() const { return bridges_.size(); }
     /// Voxels of the painted bridges, with repeats.
@@ -68,6 +75,10 @@ class ReinforcementTurn {
     void renew_scores(const RunControl& run);
     void add(EdgeIndex e, BridgeReason reason);
     bool paint_within(EdgeIndex e, BridgeReason reason, std::size_t& voxels_left);
+    enum class Widened { kYes, kNothingLeft, kNoBudget };
+    Widened widen_strand(EdgeIndex e, double factor, std::size_t& voxels_left);
+    bool widen_or_bridge(const std::vector<EdgeIndex>& over, double aim_pa, std::size_t& voxels_left);
+    [[nodiscard]] std::vector<EdgeIndex> solid_edges_above(double score_pa) const;
     void close_filled_gaps();
     [[nodiscard]] std::vector<EdgeIndex> empty_edges() const;
     [[nodiscard]] std::vector<double> geodesic_limits() const;
@@ -80,10 +91,12 @@ class ReinforcementTurn {
     std::optional<BeamModel> model_;
     std::vector<EdgeState> states_;
     std::vector<double> scores_pa_;
+    std::vector<double> strand_half_voxels_;  ///< per edge; negative until it is widened
     std::vector<Bridge> bridges_;
     std::vector<VoxelIndex> covered_;
     ReinforceRecord record_;
     bool out_of_budget_ = false;
+    bool met_ = false;
     bool out_of_candidates_ = false;
 };
 

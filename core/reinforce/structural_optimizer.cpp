@@ -99,6 +99,7 @@ struct StructuralOptimizer::Impl {
     double frozen_median_pa = -1.0;  ///< negative until the first connected pattern was solved
     std::size_t voxels_left = 0;     ///< of the material budget
     StressProgress progress;
+    std::vector<double> sample_radius;
 
     Impl(const SurfaceVoxels& shell_in, const ForceProfile& profile_in, const Material& material_in,
          const ReinforceSettings& settings_in, std::vector<std::uint8_t> keep_in)
@@ -134,6 +135,7 @@ struct StructuralOptimizer::Impl::Outcome {
     double frozen_median_pa = -1.0;
     std::size_t voxels_left = 0;
     StressProgress progress;
+    std::vector<double> sample_radius;
     std::string stopped_by = "limits met";
 };
 
@@ -186,7 +188,7 @@ void merge_record(const ReinforceRecord& turn, ReinforceRecord& record) {
 
 void StructuralOptimizer::Impl::reinforce_as_printed(SolidStates& state, Outcome& outcome, const RunControl& run) {
     const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
-    ReinforcementTurn turn(context, painter, state, run);
+    ReinforcementTurn turn(context, painter, state, outcome.record.iteration, outcome.sample_radius, run);
     turn.take_stock(run);
     turn.connect_by_score(run);
     turn.stress_as_printed(allowable_pa(), run);
@@ -201,7 +203,7 @@ void StructuralOptimizer::Impl::reinforce_as_printed(SolidStates& state, Outcome
 
 void StructuralOptimizer::Impl::reinforce(SolidStates& state, Outcome& outcome, const RunControl& run) {
     const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
-    ReinforcementTurn turn(context, painter, state, run);
+    ReinforcementTurn turn(context, painter, state, outcome.record.iteration, outcome.sample_radius, run);
     turn.take_stock(run);
     if (outcome.frozen_median_pa < 0.0) outcome.frozen_median_pa = turn.record().median_score_pa;
     outcome.progress.take(turn.record());
@@ -210,8 +212,8 @@ void StructuralOptimizer::Impl::reinforce(SolidStates& state, Outcome& outcome, 
     const bool hopeless = outcome.progress.turns_without_gain >= kTurnsWithoutGain;
     const bool spent = outcome.progress.budget_spent;
     if (!met && !hopeless && !spent) turn.stress_within_budget(limit, kSolutionsPerTurn, outcome.voxels_left, run);
-    // The geodesic criterion looks at what the first one leaves when it is done.
-    const bool stress_is_done = turn.bridges() == 0 && !turn.out_of_budget() && !spent;
+    // The geodesic criterion looks at what the first one leaves when it is done, or hopeless.
+    const bool stress_is_done = (met || turn.met() || turn.bridges() == 0) && !turn.out_of_budget() && !spent;
     if (stress_is_done && settings.geodesic_factor > 0.0) turn.geodesics(outcome.voxels_left, run);
     outcome.progress.budget_spent = spent || turn.out_of_budget();
     merge_record(turn.record(), outcome.record);
@@ -239,6 +241,7 @@ void StructuralOptimizer::Impl::commit(const SolidStates& before, const SolidSta
     frozen_median_pa = outcome.frozen_median_pa;
     voxels_left = outcome.voxels_left;
     progress = outcome.progress;
+    sample_radius = outcome.sample_radius;
 }
 
 StructuralOptimizer::StructuralOptimizer(const SurfaceVoxels& shell, const ForceProfile& profile,
@@ -269,6 +272,7 @@ ReinforceStep StructuralOptimizer::step(const SolidStates& solid, const RunContr
     outcome.frozen_median_pa = self.frozen_median_pa;
     outcome.voxels_left = self.voxels_left;
     outcome.progress = self.progress;
+    outcome.sample_radius = self.sample_radius;
     outcome.record.iteration = self.iteration + 1;
     outcome.record.allowable_pa = self.allowable_pa();
 

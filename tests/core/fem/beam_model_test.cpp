@@ -144,6 +144,14 @@ TEST_CASE("beam widths: a sheet is shared among its edges, a strip is as wide as
             kites += 0.5 * way.norm() * widths.along_edge_mm[e] / 1.5;
         }
         CHECK(kites == Approx(3600.0).epsilon(0.2));
+        // Random samples of a sheet make a few edges over borders of next to nothing, and only those are slivers.
+        const auto slivers = std::ranges::count(widths.is_sliver, std::uint8_t{1});
+        CHECK(slivers > 0);
+        CHECK(static_cast<double>(slivers) < 0.25 * static_cast<double>(c.graph.edges.size()));
+        for (EdgeIndex e = 0; e < c.graph.edges.size(); ++e) {
+            const double length_mm = static_cast<double>(c.graph.edges[e].length_voxels) * c.shell.grid.voxel_mm;
+            CHECK((widths.is_sliver[e] != 0) == (widths.along_edge_mm[e] < 0.25 * length_mm));
+        }
     }
     // A strip of 4 mm with a sample every 8: every edge is as wide as the strip.
     const SurfaceVoxels shell = voxelize(make_square(60.0, 4), {.resolution = 60});
@@ -155,6 +163,7 @@ TEST_CASE("beam widths: a sheet is shared among its edges, a strip is as wide as
     for (EdgeIndex e = 0; e < c.graph.edges.size(); ++e) {
         CHECK(widths.along_edge_mm[e] >= 3.0);
         CHECK(widths.along_edge_mm[e] <= 4.01);
+        CHECK(widths.is_sliver[e] == 0);
     }
 }
 
