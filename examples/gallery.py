@@ -37,7 +37,7 @@ VIEWS = {
 # Figures: name, model, further options of `carve`, options of `render`.
 FIGURES = [
     ("bunny-cells", "bunny00.off", ["--up", "y", "--pattern", "cells"], ["--azimuth", "30"]),
-    ("kitten-hooks", "kitten.off", ["--up", "y", "--pattern", "hooks"], ["--azimuth", "30"]),
+    ("kitten-hooks", "kitten.off", ["--up", "y", "--pattern", "hooks", "--width-mm", "40"], ["--azimuth", "30"]),
     ("skull-celtic", "skull_low.obj", ["--up", "y", "--pattern", "celtic"], ["--azimuth", "30"]),
     ("bunny-waves", "bunny00.off", ["--up", "y", "--pattern", "waves"], ["--azimuth", "30"]),
     ("bunny-zebra", "bunny00.off", ["--up", "y", "--pattern", "zebra"], ["--azimuth", "30"]),
