@@ -137,7 +137,8 @@ def numbers(report):
     valid = "closed, manifold" if mesh["closed"] and mesh["manifold"] else "not closed"
     pieces = pattern["components_after"]
     lines = [
-        f"{mesh['triangles']:,} triangles, {valid}, {mesh['self_intersections']} self-intersections, "
+        f"{report['shell']['resolution']} voxels along the longest side; {mesh['triangles']:,} triangles, {valid}, "
+        f"{mesh['self_intersections']} self-intersections, "
         f"{pieces} {'piece' if pieces == 1 else 'pieces'}; {100 * pattern['solid_fraction']:.0f} % solid "
         f"(example {100 * pattern['exemplar_solid_fraction']:.0f} %); {pattern['components_before']} pieces after the "
         "first synthesis.",
