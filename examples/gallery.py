@@ -111,7 +111,7 @@ class Gallery:
             run(self.fretwork, "carve", vase, "-q", "--pattern", ROOT / "examples/vase.toml", "-D",
                 f"exemplar.pattern={name}", "--resolution", self.resolution, "-o", model)
             pictures.append(self.out / f"vase-{name}.png")
-            run(self.fretwork, "render", model, "-q", "--size", "200x240", "-o", pictures[-1])
+            run(self.fretwork, "render", model, "-q", "--size", "160x192", "-o", pictures[-1])
         sheet = self.out / "patterns-vase-sheet.png"
         run(self.build / "examples/sheet", sheet, 6, *pictures)
         self.publish(sheet, "patterns-vase")
