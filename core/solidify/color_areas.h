@@ -14,7 +14,7 @@ namespace fretwork {
 
 struct ColorAreas {
     TriangleMesh mesh;          ///< the vertices of the input, then those on borders
-    std::vector<Rgb8> palette;  ///< per area
+    std::vector<Rgb8> palette;  ///< per area; empty: colours are not known by area
     MeshAreas areas;
     std::vector<std::uint32_t> parent;  ///< per vertex on a border: an end of the edge it was put on
 };

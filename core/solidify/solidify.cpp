@@ -135,12 +135,12 @@ std::vector<std::uint32_t> voxels_shown(const SurfaceVoxels& shell, const Anchor
     return voxels;
 }
 
-/// The wall's mesh cut along the borders between the pattern's colours; uncut and of one colour if colours are not
+/// The wall's mesh cut along the borders between the pattern's colours; uncut and without a palette if colours are not
 /// asked for.
 ColorAreas color_areas(const TriangleMesh& mesh, const Anchors& anchors, bool keep_colors, const RunControl& run) {
     if (!keep_colors)
         return {mesh,
-                {Rgb8{}},
+                {},
                 {std::vector<std::uint8_t>(mesh.triangles.size(), 0),
                  std::vector<std::uint8_t>(mesh.positions_mm.size(), 0)},
                 {}};
@@ -191,9 +191,9 @@ void finish(const SurfaceVoxels& shell, const Anchors& anchors, const SolidifySe
         if (v >= own) v = colored.parent[v - own];
     carved.triangle_colors.resize(carved.mesh.triangles.size());
     parallel_for(carved.mesh.triangles.size(), 1024, [&](std::size_t t) {
-        carved.triangle_colors[t] = colored.palette.size() > 1
-                                        ? colored.palette[colored.areas.of_triangle[simple.triangle[t]]]
-                                        : anchors.color(wall_vertex[carved.mesh.triangles[t][0]]);
+        carved.triangle_colors[t] = colored.palette.empty()
+                                        ? anchors.color(wall_vertex[carved.mesh.triangles[t][0]])
+                                        : colored.palette[colored.areas.of_triangle[simple.triangle[t]]];
     });
     carved.triangle_voxels = voxels_shown(shell, anchors, wall_vertex, carved.mesh, run);
 }
