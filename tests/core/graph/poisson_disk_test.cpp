@@ -60,6 +60,21 @@ TEST_CASE("poisson_samples: samples keep the radius and cover the pattern", "[gr
     CHECK(samples.voxels.size() <= 135);
 }
 
+TEST_CASE("poisson_samples: a radius to start from is kept where it does, and left where it does not", "[graph]") {
+    const SurfaceVoxels shell = voxelize(make_torus(20.0, 8.0, 48, 24), {.resolution = 48});
+    const SolidStates solid(shell.size(), SolidState::kSolid);
+    const ShellComponents components = connected_components(shell.adjacency);
+    SampleSettings settings;
+    settings.target = 200;
+    const double found = poisson_samples(shell.adjacency, components, solid, settings).radius_voxels[0];
+    settings.start_radius_voxels = {1.02 * found};
+    CHECK(poisson_samples(shell.adjacency, components, solid, settings).radius_voxels[0] == 1.02 * found);
+    settings.start_radius_voxels = {2.0 * found};
+    const Samples samples = poisson_samples(shell.adjacency, components, solid, settings);
+    CHECK(samples.voxels.size() >= 180);
+    CHECK(samples.voxels.size() <= 220);
+}
+
 TEST_CASE("poisson_samples: every piece of the pattern gets a sample, also when there are too many", "[graph]") {
     const SurfaceVoxels shell = voxelize(make_icosphere(20.0, 4), {.resolution = 64});
     const ShellComponents components = connected_components(shell.adjacency);
