@@ -4,11 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -19,6 +16,7 @@
 #include "formats/mesh_file.h"
 #include "likeness/baselines.h"
 #include "likeness/likeness_meter.h"
+#include "likeness_report.h"
 #include "markdown.h"
 #include "pattern_run.h"
 #include "support/make_meshes.h"
@@ -42,60 +40,6 @@ struct Variant {
     std::string name;
     Settings settings;
 };
-
-struct Series {
-    std::vector<Likeness> by_seed;
-    std::vector<double> solid_fraction;
-
-    [[nodiscard]] Likeness mean() const { return mean_of(by_seed); }
-    /// Standard error over the seeds.
-    [[nodiscard]] double error(double (*value)(const Likeness&)) const {
-        const double center = value(mean());
-        double sum = 0.0;
-        for (const Likeness& l : by_seed) sum += (value(l) - center) * (value(l) - center);
-        const auto n = static_cast<double>(by_seed.size());
-        return n < 2 ? 0.0 : std::sqrt(sum / (n - 1) / n);
-    }
-    [[nodiscard]] double mean_solid_fraction() const {
-        double sum = 0.0;
-        for (const double s : solid_fraction) sum += s;
-        return sum / static_cast<double>(std::max<std::size_t>(1, solid_fraction.size()));
-    }
-};
-
-/// Columns by name, in order of their first use.
-class Measured {
-  public:
-    Series& operator[](const std::string& column) {
-        const auto found = std::ranges::find(columns_, column, &std::pair<std::string, Series>::first);
-        return found != columns_.end() ? found->second : columns_.emplace_back(column, Series{}).second;
-    }
-    [[nodiscard]] const Series& at(const std::string& column) const {
-        return std::ranges::find(columns_, column, &std::pair<std::string, Series>::first)->second;
-    }
-    [[nodiscard]] std::vector<std::string> columns() const {
-        std::vector<std::string> names;
-        for (const auto& [name, series] : columns_) names.push_back(name);
-        return names;
-    }
-
-  private:
-    std::vector<std::pair<std::string, Series>> columns_;
-};
-
-struct ExemplarResult {
-    std::string name;
-    double solid_fraction = 0.0;
-    Measured flat;
-    std::map<std::string, Measured> curved;  ///< by model
-};
-
-double patches(const Likeness& l) {
-    return l.patches();
-}
-double worst_seam(const Likeness& l) {
-    return l.worst_seam;
-}
 
 std::vector<BenchExemplar> exemplars(const Options& options) {
     std::vector<BenchExemplar> list;
@@ -252,135 +196,6 @@ ExemplarResult measure(const Options& options, const BenchExemplar& e, const Ben
     return result;
 }
 
-/// Differences of windows below this share of the distance of random ones cannot be seen.
-constexpr double kInvisible = 0.005;
-
-/// Whether ours lies between crop and good synthesis; differences within two standard errors are none.
-std::string verdict(const Series& ours, const Series& good) {
-    double worst = 0.0;
-    bool above = false;
-    for (const auto value : {patches, worst_seam}) {
-        const double mine = value(ours.mean()), theirs = value(good.mean());
-        const double noise = 2.0 * std::hypot(ours.error(value), good.error(value));
-        above = above || mine > theirs + std::max(noise, kInvisible);
-        worst = std::max(worst, mine / std::max(theirs, 1e-9));
-    }
-    return above ? fmt::format("no, {:.2f} x 2D synthesis", worst) : "yes";
-}
-
-std::string table_of(const std::vector<ExemplarResult>& results, double (*value)(const Likeness&),
-                     const std::function<const Measured&(const ExemplarResult&)>& part) {
-    const std::vector<std::string> columns = part(results.front()).columns();
-    std::vector<std::string> heads{"exemplar"};
-    heads.insert(heads.end(), columns.begin(), columns.end());
-    MarkdownTable table(heads);
-    std::vector<double> sums(columns.size(), 0.0);
-    for (const ExemplarResult& r : results) {
-        std::vector<std::string> cells{r.name};
-        for (std::size_t c = 0; c < columns.size(); ++c) {
-            const double v = value(part(r).at(columns[c]).mean());
-            sums[c] += v / static_cast<double>(results.size());
-            cells.push_back(fmt::format("{:.3f}", v));
-        }
-        table.add(cells);
-    }
-    std::vector<std::string> means{"**mean**"};
-    for (const double s : sums) means.push_back(fmt::format("**{:.3f}**", s));
-    table.add(means);
-    return table.text();
-}
-
-std::string verdict_table(const Options& options, const std::vector<ExemplarResult>& results,
-                          const std::vector<BenchModel>& curved) {
-    const std::vector<Variant> all = variants(options);
-    std::vector<std::string> heads{"exemplar"};
-    for (const Variant& v : all) heads.push_back("plate, " + v.name);
-    for (const BenchModel& m : curved) heads.push_back(m.name + ", default");
-    MarkdownTable table(heads);
-    for (const ExemplarResult& r : results) {
-        std::vector<std::string> cells{r.name};
-        for (const Variant& v : all) cells.push_back(verdict(r.flat.at(v.name), r.flat.at("2D synthesis")));
-        for (const BenchModel& m : curved)
-            cells.push_back(verdict(r.curved.at(m.name).at("default"), r.curved.at("flat").at("2D synthesis")));
-        table.add(cells);
-    }
-    return table.text();
-}
-
-std::string shape_table(const Options& options, const std::vector<ExemplarResult>& results,
-                        const std::vector<BenchModel>& curved) {
-    std::vector<std::string> heads{"exemplar", "solid of exemplar", "solid, plate"};
-    for (const BenchModel& m : curved) heads.push_back("solid, " + m.name);
-    if (options.structure) heads.emplace_back("solid, plate, reinforced");
-    heads.insert(heads.end(), {"within 5 points", "chords: 2D synthesis / ours", "thickness: 2D synthesis / ours",
-                               "coverage: crop / 2D synthesis / ours"});
-    MarkdownTable table(heads);
-    for (const ExemplarResult& r : results) {
-        const Series &ours = r.flat.at("default"), &good = r.flat.at("2D synthesis");
-        std::vector<double> fractions = ours.solid_fraction;
-        std::vector<std::string> cells{r.name, fmt::format("{:.3f}", r.solid_fraction),
-                                       fmt::format("{:.3f}", ours.mean_solid_fraction())};
-        for (const BenchModel& m : curved) {
-            const Series& s = r.curved.at(m.name).at("default");
-            cells.push_back(fmt::format("{:.3f}", s.mean_solid_fraction()));
-            fractions.insert(fractions.end(), s.solid_fraction.begin(), s.solid_fraction.end());
-        }
-        if (options.structure)
-            cells.push_back(fmt::format("{:.3f}", r.flat.at("default, resynthesised").mean_solid_fraction()));
-        double worst = 0.0;
-        for (const double f : fractions) worst = std::max(worst, std::abs(f - r.solid_fraction));
-        cells.push_back(fmt::format("{} ({:.1f})", worst <= 0.05 ? "yes" : "no", 100 * worst));
-        const Likeness a = r.flat.at("crop").mean(), b = good.mean(), c = ours.mean();
-        cells.push_back(fmt::format("{:.3f} / {:.3f}", b.chords, c.chords));
-        cells.push_back(fmt::format("{:.3f} / {:.3f}", b.thickness, c.thickness));
-        cells.push_back(fmt::format("{:.2f} / {:.2f} / {:.2f}", a.coverage, b.coverage, c.coverage));
-        table.add(cells);
-    }
-    return table.text();
-}
-
-/// Baselines and our own on one model, side by side.
-Measured beside_baselines(const ExemplarResult& r, const std::string& model) {
-    Measured all = r.curved.at("flat");
-    for (const std::string& column : r.curved.at(model).columns()) all[column] = r.curved.at(model).at(column);
-    return all;
-}
-
-std::string document(const Options& options, const std::vector<ExemplarResult>& results,
-                     const std::vector<BenchModel>& curved) {
-    const auto flat = [](const ExemplarResult& r) -> const Measured& { return r.flat; };
-    std::string text = fmt::format(
-        "Means over {} seeds; plates of {} x {} voxels; 0 = as alike as can be. *Resynthesised*: after the loop of "
-        "Algorithm 1; *painted*: its bridges laid over the first synthesis instead. Plates are reinforced under "
-        "gravity, the {} with the default loads.\n\n",
-        options.seeds, options.plate, options.plate, curved.empty() ? "curved models" : curved.front().name);
-    text +=
-        "**Between crop and good 2D synthesis?** Patch similarity and worst seam both; differences within two "
-        "standard errors, or below 0.005, count as none.\n\n" +
-        verdict_table(options, results, curved);
-    text += "\n**Bidirectional patch similarity, plate**\n\n" + table_of(results, patches, flat);
-    text += "\n**Worst seams, plate**\n\n" + table_of(results, worst_seam, flat);
-    text +=
-        "\n**Shapes, default preset.** In brackets: the largest difference of any run before reinforcement, in "
-        "points.\n\n" +
-        shape_table(options, results, curved);
-    for (const BenchModel& model : curved) {
-        std::vector<Measured> kept;
-        kept.reserve(results.size());
-        for (const ExemplarResult& r : results) kept.push_back(beside_baselines(r, model.name));
-        const auto on_model = [&](const ExemplarResult& r) -> const Measured& {
-            return kept[static_cast<std::size_t>(&r - results.data())];
-        };
-        text += fmt::format(
-                    "\n**Patch similarity, {} at {} voxels** ({} tangent windows; baselines measured the same "
-                    "way on flat ones)\n\n",
-                    model.name, options.curved, kCurvedWindows) +
-                table_of(results, patches, on_model);
-        text += fmt::format("\n**Worst seams, {}**\n\n", model.name) + table_of(results, worst_seam, on_model);
-    }
-    return text;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -408,7 +223,11 @@ int main(int argc, char** argv) {
             fmt::print(stderr, "{}: patches {:.3f}, worst seams {:.3f}\n", e.name, ours.patches(), ours.worst_seam);
         }
         if (results.empty()) throw std::runtime_error("no exemplar of that name");
-        const std::string text = document(options, results, curved);
+        LikenessReportSettings report{
+            options.seeds, options.plate, options.curved, kCurvedWindows, options.structure, {}, {}};
+        for (const Variant& v : variants(options)) report.variants.push_back(v.name);
+        for (const BenchModel& m : curved) report.models.push_back(m.name);
+        const std::string text = likeness_report(report, results);
         if (options.document.empty())
             fmt::print("{}", text);
         else
