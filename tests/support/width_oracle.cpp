@@ -85,7 +85,7 @@ class Buckets {
 
 /// Discs are placed by their samples alone, so the border of a feature is reached up to `slack_mm`.
 double uncovered_share(const Samples& samples, const Buckets& buckets, std::uint8_t phase, double radius_mm,
-                       double slack_mm) {
+                       double slack_mm, const std::function<bool(const Vec3&)>& counted) {
     const std::size_t n = samples.points.size();
     std::vector<std::uint8_t> center(n, 0);
     parallel_for(n, 256, [&](std::size_t i) {
@@ -100,7 +100,7 @@ double uncovered_share(const Samples& samples, const Buckets& buckets, std::uint
     std::size_t members = 0;
     std::size_t bare = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        if (samples.solid[i] != phase) continue;
+        if (samples.solid[i] != phase || !counted(samples.points[i])) continue;
         ++members;
         if (!covered[i]) ++bare;
     }
@@ -110,7 +110,8 @@ double uncovered_share(const Samples& samples, const Buckets& buckets, std::uint
 }  // namespace
 
 WidthJudgement judge_widths(const TriangleMesh& surface, const TriangleMesh& carved, double depth_mm, double spacing_mm,
-                            double solid_width_mm, double hole_width_mm) {
+                            double solid_width_mm, double hole_width_mm,
+                            const std::function<bool(const Vec3&)>& counted) {
     Samples samples = spread_samples(surface, spacing_mm);
     const SurfaceTree wall(carved);
     const std::size_t n = samples.points.size();
@@ -124,8 +125,8 @@ WidthJudgement judge_widths(const TriangleMesh& surface, const TriangleMesh& car
     const auto solid = static_cast<double>(std::count(samples.solid.begin(), samples.solid.end(), 1));
     judgement.solid_share = solid / static_cast<double>(n);
     const Buckets buckets(samples, 0.5 * std::max(solid_width_mm, hole_width_mm));
-    judgement.too_thin_share = uncovered_share(samples, buckets, 1, 0.5 * solid_width_mm, 2.0 * spacing_mm);
-    judgement.too_narrow_share = uncovered_share(samples, buckets, 0, 0.5 * hole_width_mm, 2.0 * spacing_mm);
+    judgement.too_thin_share = uncovered_share(samples, buckets, 1, 0.5 * solid_width_mm, 2.0 * spacing_mm, counted);
+    judgement.too_narrow_share = uncovered_share(samples, buckets, 0, 0.5 * hole_width_mm, 2.0 * spacing_mm, counted);
     return judgement;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "core/mesh/triangle_mesh.h"
 
@@ -21,7 +22,9 @@ struct WidthJudgement {
 /// Spreads samples over `surface` (about one per `spacing_mm`^2), looks up whether the wall is there by going
 /// `depth_mm` along the inward normal and asking `carved`, and tests each sample against discs of samples.
 /// Discs are Euclidean balls around samples; they reach round an edge, not through to the other side of a wall.
-WidthJudgement judge_widths(const TriangleMesh& surface, const TriangleMesh& carved, double depth_mm, double spacing_mm,
-                            double solid_width_mm, double hole_width_mm);
+/// \param counted  whether a place of the surface counts in the shares; all places bound the discs
+WidthJudgement judge_widths(
+    const TriangleMesh& surface, const TriangleMesh& carved, double depth_mm, double spacing_mm, double solid_width_mm,
+    double hole_width_mm, const std::function<bool(const Vec3&)>& counted = [](const Vec3&) { return true; });
 
 }  // namespace fretwork::testing
