@@ -29,8 +29,8 @@ namespace {
 // The flow, with the seconds that each stage takes on a bunny of 256 voxels. The loop of Algorithm 1
 // is one entry, because nobody knows how often it will turn.
 std::vector<PlannedStage> planned_stages() {
-    return {{"repair", 0.6},     {"voxelize", 0.6}, {"pyramid", 1.0},   {"synthesize", 2.5},
-            {"reinforce", 25.0}, {"enlarge", 4.0},  {"solidify", 26.0}, {"verify", 10.0}};
+    return {{"repair", 0.3},    {"voxelize", 0.3}, {"pyramid", 0.3},  {"synthesize", 0.6},
+            {"reinforce", 3.0}, {"enlarge", 2.0},  {"solidify", 7.5}, {"verify", 0.3}};
 }
 
 std::vector<SettingAssignment> resolved_document(const Settings& settings, const ResolvedSettings& resolved) {

@@ -124,6 +124,7 @@ struct StructuralOptimizer::Impl {
     void connect_and_seed(SolidStates& state, Outcome& outcome, const RunControl& run);
     void reinforce_as_printed(SolidStates& state, Outcome& outcome, const RunControl& run);
     void reinforce(SolidStates& state, Outcome& outcome, const RunControl& run);
+    void take_stock(SolidStates& state, Outcome& outcome, const RunControl& run);
     void commit(const SolidStates& before, const SolidStates& after, const Outcome& outcome, ReinforceStep& step);
 };
 
@@ -225,6 +226,14 @@ void StructuralOptimizer::Impl::reinforce(SolidStates& state, Outcome& outcome, 
         outcome.stopped_by = hopeless ? "no gain" : "no candidate";
 }
 
+/// The last turn adds nothing against stress, but says what the result bears.
+void StructuralOptimizer::Impl::take_stock(SolidStates& state, Outcome& outcome, const RunControl& run) {
+    const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
+    ReinforcementTurn turn(context, painter, state, outcome.record.iteration, outcome.sample_radius, run);
+    turn.take_stock(run);
+    merge_record(turn.record(), outcome.record);
+}
+
 void StructuralOptimizer::Impl::commit(const SolidStates& before, const SolidStates& after, const Outcome& outcome,
                                        ReinforceStep& step) {
     step.record = outcome.record;
@@ -284,7 +293,12 @@ ReinforceStep StructuralOptimizer::step(const SolidStates& solid, const RunContr
         outcome.record.specks_dropped = specks.pieces;
     }
     if (!printed || last) self.connect_and_seed(state, outcome, run);
-    if (!last) printed ? self.reinforce_as_printed(state, outcome, run) : self.reinforce(state, outcome, run);
+    if (last)
+        self.take_stock(state, outcome, run);
+    else if (printed)
+        self.reinforce_as_printed(state, outcome, run);
+    else
+        self.reinforce(state, outcome, run);
     self.connect_and_seed(state, outcome, run);
     result.done = last || !outcome.asks_for_resynthesis;
     if (result.done) {

@@ -30,7 +30,7 @@ struct ReinforceSettings {
     double stress_ratio = 10.0;          ///< stop when max <= ratio x median frozen after connecting
     double material_budget = 0.15;       ///< voxels that may be added after connecting, share of the shell's
     int batch = 8;                       ///< bridges between two factorisations
-    int max_iterations = 30;             ///< turns at most; the last one only connects
+    int max_iterations = 30;             ///< turns at most; the last one only connects and takes stock
     std::uint64_t seed = 1;
 };
 
@@ -43,7 +43,7 @@ struct ReinforceRecord {
     std::size_t bridges_stress = 0;
     std::size_t bridges_geodesic = 0;
     std::size_t voxels_added = 0;
-    double max_score_pa = 0.0;  ///< over solid edges, before this turn's bridges
+    double max_score_pa = 0.0;  ///< over solid edges, before this turn's bridges against stress
     double p99_score_pa = 0.0;
     double median_score_pa = 0.0;
     double average_score_pa = 0.0;

@@ -14,8 +14,9 @@ namespace fretwork {
     return std::min(settings.coarse_passes, 1 << std::min(rank, 16));
 }
 
-/// Least passes of a local update, which has to grow in from its surroundings.
-inline constexpr int kLocalPasses = 2;
+/// Least passes of a local update, which has to grow in from its surroundings: with few of them the inside of a bridge
+/// is left as confetti.
+inline constexpr int kLocalPasses = 8;
 
 /// A number for each pass of each level of each call.
 /// \param height  of the level (ProblemLevel)

@@ -6,8 +6,8 @@ namespace {
 SynthesisSettings fine_settings() {
     SynthesisSettings s;
     s.directions = 600;
-    s.candidates = 64;
-    s.fine_random_candidates = 24;
+    s.candidates = 96;
+    s.fine_random_candidates = 48;
     s.transported = 8;
     s.coarse_passes = 16;
     return s;

@@ -35,10 +35,10 @@ struct SynthesisSettings {
     int translations = 0;    ///< per axis, in [0, 1024]; 0 = continuous; the paper: 16
     double cone_deg = 25.0;  ///< random planes lie within this angle of the voxel's normal, in [0, 90]
 
-    int candidates = 40;             ///< coherent, transported and random together, in [1, 256]
-    int fine_random_candidates = 8;  ///< most random ones on the two finest levels, in [0, 256]
-    int transported = 4;             ///< coherent ones moved to the voxel's own best plane, levels >= 2, in [0, 64]
-    bool count_repeated = false;     ///< neighbours that agree use up one candidate each, as in the paper
+    int candidates = 64;              ///< coherent, transported and random together, in [1, 256]
+    int fine_random_candidates = 24;  ///< most random ones on the two finest levels, in [0, 256]
+    int transported = 4;              ///< coherent ones moved to the voxel's own best plane, levels >= 2, in [0, 64]
+    bool count_repeated = false;      ///< neighbours that agree use up one candidate each, as in the paper
 
     double distortion_weight = 1.0;   ///< of E_distortion, in [0, 100]
     double orientation_weight = 2.0;  ///< of 1 - cos(angle to the field), in [0, 100]

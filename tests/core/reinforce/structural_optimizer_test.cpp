@@ -294,6 +294,20 @@ TEST_CASE("structural optimizer: the same on any number of threads", "[reinforce
     }
 }
 
+TEST_CASE("structural optimizer: a run cut short still says what its result bears", "[reinforce]") {
+    const SurfaceVoxels shell = voxelize(make_torus(20.0, 8.0, 48, 24), {.resolution = 48});
+    ReinforceSettings settings = small_settings(ReinforceRules::kDefault);
+    settings.safety_factor = 100.0;  // no pattern of PLA is that safe
+    for (const int turns : {1, 2}) {
+        settings.max_iterations = turns;
+        const Run run = run_to_the_end(shell, blobs(shell, 12.0, 3), use_of(shell), settings);
+        REQUIRE(run.records.back().stopped_by == "iterations");
+        CHECK(run.records.back().max_score_pa > run.records.back().allowable_pa);
+        CHECK(run.records.back().max_score_pa >= run.records.back().p99_score_pa);
+        CHECK(run.records.back().median_score_pa > 0.0);
+    }
+}
+
 TEST_CASE("structural optimizer: rejects settings and data out of range", "[reinforce]") {
     const SurfaceVoxels shell = voxelize(make_icosphere(10.0, 3), {.resolution = 16});
     const ForceProfile profile = use_of(shell);
