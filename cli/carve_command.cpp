@@ -96,7 +96,7 @@ int check(const CarveOptions& options, Interrupt& interrupt) {
 std::string preview_png(const CarveResult& result, Preset preset, const RunControl& run) {
     RenderSettings picture;
     if (preset == Preset::kDraft) {
-        picture.width = picture.height = 800;
+        picture.width = picture.height = 640;
         picture.samples_per_axis = 2;
     }
     return write_png(render(result.carved.mesh, result.carved.triangle_colors, picture, run));

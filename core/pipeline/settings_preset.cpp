@@ -10,7 +10,7 @@ void apply_preset(Settings& settings, Preset preset) {
             // The search stays that of the full run, whose coarse levels these are (shell.halvings).
             settings.structure.steps.samples = 250;
             settings.structure.steps.max_iterations = 2;
-            settings.fabrication.simplify_voxels = 0.0;
+            settings.fabrication.simplify_voxels = 0.15;
             break;
         case Preset::kDefault:
             break;
