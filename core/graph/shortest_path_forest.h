@@ -20,7 +20,8 @@ inline constexpr GraphDistance kUnreached = std::numeric_limits<GraphDistance>::
 inline constexpr VoxelIndex kNoVoxel = std::numeric_limits<VoxelIndex>::max();
 
 [[nodiscard]] inline GraphDistance to_distance(double voxels) {
-    return static_cast<GraphDistance>(voxels * kDistanceUnit + 0.5);
+    // Lengths are positive, and this is called for every link: no call into the mathematics library.
+    return static_cast<GraphDistance>(voxels * kDistanceUnit + 0.5);  // NOLINT(bugprone-incorrect-roundings)
 }
 [[nodiscard]] inline double to_voxels(GraphDistance d) {
     return static_cast<double>(d) / kDistanceUnit;
