@@ -41,8 +41,7 @@ void StiffnessPattern::find_blocks(const ElementNodes& elements) {
     for (std::size_t n = 0; n + 1 < block_first_.size(); ++n)
         blocks.emplace_back(static_cast<std::int64_t>(n), static_cast<std::int64_t>(n));
     std::ranges::sort(blocks);
-    const auto repeats = std::ranges::unique(blocks);
-    blocks.erase(repeats.begin(), repeats.end());
+    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
     block_row_.reserve(blocks.size());
     for (const auto& [column, row] : blocks) {
         ++block_first_[static_cast<std::size_t>(column) + 1];

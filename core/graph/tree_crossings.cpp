@@ -15,9 +15,8 @@ bool before(const TreeCrossing& x, const TreeCrossing& y) {
 
 void keep_best_of_each_pair(std::vector<TreeCrossing>& crossings) {
     std::ranges::sort(crossings, before);
-    const auto repeats = std::ranges::unique(
-        crossings, [](const TreeCrossing& x, const TreeCrossing& y) { return x.a == y.a && x.b == y.b; });
-    crossings.erase(repeats.begin(), repeats.end());
+    const auto same_pair = [](const TreeCrossing& x, const TreeCrossing& y) { return x.a == y.a && x.b == y.b; };
+    crossings.erase(std::unique(crossings.begin(), crossings.end(), same_pair), crossings.end());
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ struct Named {
     Enum value;
     const char* name;
 };
+template <class Enum>
+Named(Enum, const char*) -> Named<Enum>;
 
 constexpr std::array kPresetNames{Named{Preset::kDraft, "draft"}, Named{Preset::kDefault, "default"},
                                   Named{Preset::kFine, "fine"}, Named{Preset::kPaper, "paper"}};
@@ -157,8 +159,9 @@ SettingInfo row(std::string key, Member member, std::string unit, std::optional<
         const bool unset_when_empty = !info.when_unset.empty();
         info.get = [member, unset_when_empty](const Settings& s) -> std::optional<SettingValue> {
             const Raw& value = member(const_cast<Settings&>(s));
-            if constexpr (std::is_same_v<Raw, std::string>)
-                if (unset_when_empty && value.empty()) return std::nullopt;
+            if (unset_when_empty)
+                if constexpr (std::is_same_v<Raw, std::string>)
+                    if (value.empty()) return std::nullopt;
             return Codec<Raw>::read(value);
         };
         info.set = [member](Settings& s, const SettingValue& value) { member(s) = Codec<Raw>::write(value); };
@@ -173,6 +176,7 @@ constexpr SettingRange above(double min, double max) {
     return {min, max, true};
 }
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): the argument is the name of a member
 #define FIELD(path)             \
     [](Settings & s) -> auto& { \
         return s.path;          \

@@ -63,8 +63,7 @@ ConnectedPieces connect_pieces(const SurfaceVoxels& shell, const Adjacency& firm
         }
     }
     std::ranges::sort(result.covered);
-    const auto repeats = std::ranges::unique(result.covered);
-    result.covered.erase(repeats.begin(), repeats.end());
+    result.covered.erase(std::unique(result.covered.begin(), result.covered.end()), result.covered.end());
     return result;
 }
 

@@ -21,8 +21,7 @@ double squared_distance(const VoxelCoord& a, const VoxelCoord& b) {
 void sort_once(PaintedVoxels& painted) {
     std::ranges::sort(painted.added);
     std::ranges::sort(painted.covered);
-    const auto repeats = std::ranges::unique(painted.covered);
-    painted.covered.erase(repeats.begin(), repeats.end());
+    painted.covered.erase(std::unique(painted.covered.begin(), painted.covered.end()), painted.covered.end());
 }
 
 }  // namespace
