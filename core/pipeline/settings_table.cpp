@@ -176,11 +176,12 @@ constexpr SettingRange above(double min, double max) {
     return {min, max, true};
 }
 
-// NOLINTNEXTLINE(bugprone-macro-parentheses): the argument is the name of a member
+// The argument is the name of a member. NOLINTBEGIN(bugprone-macro-parentheses)
 #define FIELD(path)             \
     [](Settings & s) -> auto& { \
         return s.path;          \
     }
+// NOLINTEND(bugprone-macro-parentheses)
 
 void add_input(std::vector<SettingInfo>& t) {
     t.push_back(row("input.up", FIELD(input.up), "1", {},
