@@ -19,8 +19,12 @@ constexpr const char* kStage = "enlarge";
 constexpr float kSlack = 1e-3F;
 
 /// The border is drawn later, between voxels, and may cut a little deeper than the states say: features are that much
-/// wider here, so that what is printed has the asked width.
-constexpr double kDrawnBorder = 0.5;
+/// wider here, in voxels, so that what is printed has the asked width.
+constexpr double kDrawnSolidBorder = 0.5;
+
+/// The same for holes. The drawn border leans towards the empty side, by a quarter of a voxel on each bank, and
+/// distances along links are a little longer than the ways they stand for.
+constexpr double kDrawnHoleBorder = 1.1;
 
 std::string shortest(double value) {
     std::string text = std::to_string(value);
@@ -264,8 +268,8 @@ EnlargeResult enlarge_features(const SurfaceVoxels& shell, const SolidStates& so
     if (solid.size() != shell.size() || (!protect.empty() && protect.size() != shell.size()))
         throw InvalidInput("enlarge: " + std::to_string(solid.size()) + " states and " +
                            std::to_string(protect.size()) + " marks for " + std::to_string(shell.size()) + " voxels");
-    const double feature = checked_width(shell, "min_feature_mm", settings.min_feature_mm) + kDrawnBorder;
-    const double hole = checked_width(shell, "min_hole_mm", settings.min_hole_mm);
+    const double feature = checked_width(shell, "min_feature_mm", settings.min_feature_mm) + kDrawnSolidBorder;
+    const double hole = checked_width(shell, "min_hole_mm", settings.min_hole_mm) + kDrawnHoleBorder;
     run.checkpoint(kStage, 0.0);
     return Enlarger(shell, solid, protect, feature, hole, run).run();
 }
