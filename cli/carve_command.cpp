@@ -28,13 +28,40 @@ struct CarveOptions {
     bool strict = false;
 };
 
-CarveInput input_of(const CarveOptions& options, const Settings& settings, const RunControl& run) {
+/// Curved faces follow their surface to a tenth of a voxel.
+CadMeshing meshing_for(const Settings& settings) {
+    constexpr double kVoxelShare = 0.1;
+    CadMeshing meshing;
+    if (settings.shell.voxel_mm && !settings.input.size_mm)
+        meshing.deviation_mm = kVoxelShare * *settings.shell.voxel_mm;
+    else if (settings.shell.resolution)
+        // The diagonal is at most sqrt(3) of the longest side.
+        meshing.deviation_share = kVoxelShare / (1.74 * *settings.shell.resolution);
+    return meshing;
+}
+
+/// Faces and parts that regions may name.
+std::vector<NamedTriangles> named_triangles_of(const MeshFile& file) {
+    std::vector<NamedTriangles> named;
+    for (const auto* list : {&file.faces, &file.parts})
+        for (const MeshPart& part : *list)
+            if (!part.name.empty()) named.push_back({part.name, part.first_triangle, part.triangle_count});
+    return named;
+}
+
+CarveInput input_of(const CarveOptions& options, const Settings& settings, std::vector<std::string>& read,
+                    const RunControl& run) {
     // The exemplar first: it is quick, and most mistakes are there.
     ChosenExemplar chosen = exemplar_of(settings);
-    MeshFile file = read_model(options.model, run);
+    ModelSource source = options.model;
+    source.cad = meshing_for(settings);
+    MeshFile file = read_model(source, run);
+    if (source.path != kStream) read.push_back(source.path);
+    for (const std::filesystem::path& beside : file.read_beside) read.push_back(beside.string());
     if (!options.run.quiet)
         for (const std::string& warning : file.warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
     CarveInput input;
+    input.named_triangles = named_triangles_of(file);
     input.mesh = std::move(file.mesh);
     input.model_name = options.model.path == kStream ? "standard input" : options.model.path;
     input.exemplar = std::move(chosen.exemplar);
@@ -82,7 +109,8 @@ bool below_standard(const RunReport& report) {
 int check(const CarveOptions& options, Interrupt& interrupt) {
     const Settings settings = settings_of(options.pattern);
     const RunControl run = control_of(options.run, interrupt);
-    const CarveInput input = input_of(options, settings, run.slice(0.0, 0.2));
+    std::vector<std::string> read;
+    const CarveInput input = input_of(options, settings, read, run.slice(0.0, 0.2));
     const RunReport report =
         naming_model(input, [&] { return check_carve(input, settings, limits_of(options.run), run.slice(0.2, 1.0)); });
     if (!options.run.quiet) {
@@ -112,21 +140,23 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     const RunLimits limits = limits_of(options.run);
     const RunControl run = control_of(options.run, interrupt);
 
-    const CarveInput input = input_of(options, settings, run.slice(0.0, 0.02));
+    std::vector<std::string> read;
+    const CarveInput input = input_of(options, settings, read, run.slice(0.0, 0.02));
     const CarveResult result =
         naming_model(input, [&] { return carve(input, settings, limits, run.slice(0.02, 0.95)); });
 
-    const std::string bytes = carved_bytes(result, settings, input, format, run.slice(0.95, 0.98));
+    const MeshBytes carved = carved_bytes(result, settings, input, options.output, format, run.slice(0.95, 0.98));
     if (!options.preview.empty())
         put(options.preview, preview_png(result, settings.synthesis.preset, run.slice(0.98, 0.995)), interrupt);
     if (!options.summary.empty()) put(options.summary, report_json(result.report), interrupt);
     if (!options.dependencies.empty()) {
-        std::vector<std::string> inputs = files_read(options.pattern, settings);
-        if (options.model.path != kStream) inputs.insert(inputs.begin(), options.model.path);
-        put(options.dependencies, make_rule(options.output, inputs), interrupt);
+        const std::vector<std::string> more = files_read(options.pattern, settings);
+        read.insert(read.end(), more.begin(), more.end());
+        put(options.dependencies, make_rule(options.output, read), interrupt);
     }
     // The result last: whoever sees it sees everything else too.
-    put(options.output, bytes, interrupt);
+    if (!carved.materials_path.empty()) put(carved.materials_path, carved.materials, interrupt);
+    put(options.output, carved.bytes, interrupt);
     run.checkpoint("write", 1.0);
     if (!options.run.quiet) {
         print_warnings(result.report);
@@ -140,11 +170,11 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
 void add_carve(CLI::App& program, Action& chosen) {
     auto options = std::make_shared<CarveOptions>();
     CLI::App* command = program.add_subcommand("carve", "Carve a pattern through the shell of a model");
-    command->add_option("model", options->model.path, "The model: 3MF, STL, OBJ, PLY or OFF; - reads standard input")
+    command->add_option("model", options->model.path, fmt::format("The model: {}; - reads standard input", kReadable))
         ->required()
         ->type_name("IN");
     command
-        ->add_option("-o,--output", options->output, "The result: 3MF, STL, OBJ, PLY or OFF; - writes standard output")
+        ->add_option("-o,--output", options->output, fmt::format("The result: {}; - writes standard output", kWritable))
         ->type_name("OUT");
     add_pattern_flags(*command, options->pattern);
     add_setting_flags(*command, options->pattern);

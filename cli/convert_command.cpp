@@ -27,8 +27,9 @@ int convert_command(const ConvertOptions& options, Interrupt& interrupt) {
         for (const std::string& warning : file.warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
     for (Vec3& p : file.mesh.positions_mm) p *= options.scale;
     const std::string name = std::filesystem::path(options.model.path).stem().string();
-    const std::string bytes = write_mesh({file.mesh, file.triangle_colors, name}, format);
-    put(options.output, bytes, interrupt);
+    const MeshBytes result = mesh_bytes(options.output, {file.mesh, file.triangle_colors, name}, format);
+    if (!result.materials_path.empty()) put(result.materials_path, result.materials, interrupt);
+    put(options.output, result.bytes, interrupt);
     run.checkpoint("write", 1.0);
     return kDone;
 }
@@ -38,10 +39,10 @@ int convert_command(const ConvertOptions& options, Interrupt& interrupt) {
 void add_convert(CLI::App& program, Action& chosen) {
     auto options = std::make_shared<ConvertOptions>();
     CLI::App* command = program.add_subcommand("convert", "Turn a model into another format");
-    command->add_option("in", options->model.path, "3MF, STL, OBJ, PLY or OFF; - reads standard input")
+    command->add_option("in", options->model.path, std::string(kReadable) + "; - reads standard input")
         ->required()
         ->type_name("IN");
-    command->add_option("out", options->output, "3MF, STL, OBJ, PLY or OFF; - writes standard output")
+    command->add_option("out", options->output, std::string(kWritable) + "; - writes standard output")
         ->required()
         ->type_name("OUT");
     command->add_option("--input-format", options->model.format, "Format of IN when the name does not tell")

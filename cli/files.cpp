@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "formats/atomic_write.h"
+#include "formats/obj_materials.h"
 #include "formats/read_file.h"
 
 namespace fretwork::cli {
@@ -86,11 +87,27 @@ MeshFile read_model(const ModelSource& source, const RunControl& run) {
         MeshReadOptions options;
         if (!source.format.empty()) options.format = mesh_format_from_name(source.format);
         options.unit = unit;
+        options.cad = source.cad;
         return read_mesh(fs::path(source.path), options, run);
     }
     if (source.format.empty()) throw InvalidSetting("reading from standard input needs --input-format");
     const MeshFormat format = mesh_format_from_name(source.format);
-    return read_mesh(read_stdin(), format, "standard input", unit, run);
+    return read_mesh(read_stdin(), format, "standard input", {.format = format, .unit = unit, .cad = source.cad}, run);
+}
+
+MeshBytes mesh_bytes(const std::string& path, MeshToWrite mesh, MeshFormat format) {
+    MeshBytes out;
+    if (format != MeshFormat::kObj || mesh.triangle_colors.empty() || path == kStream || is_special(path)) {
+        out.bytes = write_mesh(mesh, format);
+        return out;
+    }
+    const fs::path materials = obj_materials_path(path);
+    const std::string name = materials.filename().string();
+    mesh.obj_materials = name;
+    out.bytes = write_mesh(mesh, format);
+    out.materials_path = materials.string();
+    out.materials = write_obj_materials(mesh.triangle_colors);
+    return out;
 }
 
 MeshFormat output_format(const std::string& path, const std::string& format) {

@@ -18,12 +18,27 @@ struct ModelSource {
     std::string path;
     std::string format;               ///< empty: from the extension
     std::string unit = "millimeter";  ///< of files that name none
+    CadMeshing cad = {};              ///< of STEP, IGES and BREP
 };
 
 MeshFile read_model(const ModelSource& source, const RunControl& run = {});
 
 /// The format of a result from its extension or name. \throws InvalidSetting  `-` without a format.
 MeshFormat output_format(const std::string& path, const std::string& format);
+
+/// Formats that are read and written, as help texts name them.
+inline constexpr const char* kReadable = "3MF, STL, OBJ, PLY, OFF, AMF, STEP, IGES or BREP";
+inline constexpr const char* kWritable = "3MF, STL, OBJ, PLY, OFF, AMF or GLB";
+
+/// A mesh in a file's bytes, and the colours of an OBJ that go beside them.
+struct MeshBytes {
+    std::string bytes;
+    std::string materials_path;  ///< empty: none
+    std::string materials;
+};
+
+/// \param path  where the mesh will go; an OBJ has its colours beside it unless it is a stream
+MeshBytes mesh_bytes(const std::string& path, MeshToWrite mesh, MeshFormat format);
 
 /// Fails before the work is done rather than after it.
 /// \throws FileError  `path` is a folder, cannot be written, or is one of the `inputs`.

@@ -76,7 +76,7 @@ int render_command(const RenderOptions& options, Interrupt& interrupt) {
 void add_render(CLI::App& program, Action& chosen) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = program.add_subcommand("render", "Draw a shaded picture of a model; no display needed");
-    command->add_option("model", options->model.path, "3MF, STL, OBJ, PLY or OFF; - reads standard input")
+    command->add_option("model", options->model.path, std::string(kReadable) + "; - reads standard input")
         ->required()
         ->type_name("FILE");
     command->add_option("-o,--output", options->output, "The picture; - writes standard output")

@@ -27,12 +27,12 @@ std::string carved_threemf(const CarveResult& result, const Settings& settings, 
 
 }  // namespace
 
-std::string carved_bytes(const CarveResult& result, const Settings& settings, const CarveInput& input,
-                         MeshFormat format, const RunControl& run) {
+MeshBytes carved_bytes(const CarveResult& result, const Settings& settings, const CarveInput& input,
+                       const std::string& path, MeshFormat format, const RunControl& run) {
     const std::vector<Rgb8>& colors = result.carved.triangle_colors;
-    if (format == MeshFormat::kThreemf) return carved_threemf(result, settings, input, colors, run);
+    if (format == MeshFormat::kThreemf) return {carved_threemf(result, settings, input, colors, run), {}, {}};
     const std::string name = std::filesystem::path(input.model_name).stem().string();
-    return write_mesh({result.carved.mesh, colors, name}, format);
+    return mesh_bytes(path, {result.carved.mesh, colors, name}, format);
 }
 
 }  // namespace fretwork::cli

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/files.h"
 #include "core/base/run_control.h"
 #include "core/pipeline/carve.h"
 #include "formats/mesh_file.h"
@@ -11,7 +12,8 @@ namespace fretwork::cli {
 
 /// 3MF with colours, voxel data, resolved spec and report; the other formats with what they can hold. The same
 /// input, settings and seed always give the same bytes.
-std::string carved_bytes(const CarveResult& result, const Settings& settings, const CarveInput& input,
-                         MeshFormat format, const RunControl& run);
+/// \param path  where it will go
+MeshBytes carved_bytes(const CarveResult& result, const Settings& settings, const CarveInput& input,
+                       const std::string& path, MeshFormat format, const RunControl& run);
 
 }  // namespace fretwork::cli

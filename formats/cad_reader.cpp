@@ -14,7 +14,9 @@
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <cmath>
 #include <mutex>
@@ -64,7 +66,8 @@ void break_into_triangles(const TopoDS_Shape& shape, const CadMeshing& meshing) 
     Bnd_Box box;
     BRepBndLib::Add(shape, box, Standard_False);
     IMeshTools_Parameters parameters;
-    parameters.Deflection = box.IsVoid() ? 0.1 : meshing.deviation_share * std::sqrt(box.SquareExtent());
+    const double share_mm = box.IsVoid() ? 0.1 : meshing.deviation_share * std::sqrt(box.SquareExtent());
+    parameters.Deflection = meshing.deviation_mm.value_or(share_mm);
     parameters.Angle = meshing.angle_rad;
     parameters.InParallel = Standard_False;
     BRepMesh_IncrementalMesh(shape, parameters);
@@ -72,7 +75,9 @@ void break_into_triangles(const TopoDS_Shape& shape, const CadMeshing& meshing) 
 
 class FaceCollector {
   public:
-    explicit FaceCollector(std::string_view source) : source_(source), welder_(1 << 16) {}
+    FaceCollector(const TopoDS_Shape& shape, std::string_view source) : source_(source), welder_(1 << 16) {
+        TopExp::MapShapes(shape, TopAbs_FACE, numbers_);
+    }
 
     void add_faces(const TopoDS_Shape& within, TopAbs_ShapeEnum but_not_in = TopAbs_SHAPE) {
         for (TopExp_Explorer face(within, TopAbs_FACE, but_not_in); face.More(); face.Next())
@@ -95,7 +100,9 @@ class FaceCollector {
     void add_face(const TopoDS_Face& face) {
         TopLoc_Location location;
         const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
-        ++faces_;
+        const Standard_Integer number = numbers_.FindIndex(face);
+        const auto first = static_cast<std::uint32_t>(file_.mesh.triangles.size());
+        faces_ = static_cast<std::size_t>(number);
         if (triangulation.IsNull())
             fail_parse(source_, "face " + std::to_string(faces_), "a surface that cannot be broken into triangles",
                        "a sound face");
@@ -113,6 +120,8 @@ class FaceCollector {
             if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
                 file_.mesh.triangles.push_back(triangle);
         }
+        file_.faces.push_back(
+            {"Face" + std::to_string(number), first, static_cast<std::uint32_t>(file_.mesh.triangles.size()) - first});
     }
 
     /// Two faces may differ in the last bits of the points on their common edge; rounded to floats they agree.
@@ -127,11 +136,12 @@ class FaceCollector {
     std::string_view source_;
     EqualPointWelder welder_;
     MeshFile file_;
-    std::size_t faces_ = 0;
+    TopTools_IndexedMapOfShape numbers_;
+    std::size_t faces_ = 0;  ///< number of the one in hand
 };
 
 MeshFile collect(const TopoDS_Shape& shape, std::string_view source, const RunControl& run) {
-    FaceCollector collector(source);
+    FaceCollector collector(shape, source);
     int solids = 0;
     for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next()) {
         run.throw_if_stopped();
@@ -147,8 +157,9 @@ MeshFile collect(const TopoDS_Shape& shape, std::string_view source, const RunCo
 
 MeshFile read_cad(std::string_view bytes, CadFormat format, std::string_view source, const CadMeshing& meshing,
                   const RunControl& run) {
-    if (!(meshing.deviation_share > 0.0) || !(meshing.angle_rad > 0.0))
-        throw InvalidSetting("CAD meshing: found deviation " + std::to_string(meshing.deviation_share) + " and angle " +
+    const double deviation = meshing.deviation_mm.value_or(meshing.deviation_share);
+    if (!(deviation > 0.0) || !(meshing.angle_rad > 0.0))
+        throw InvalidSetting("CAD meshing: found deviation " + std::to_string(deviation) + " and angle " +
                              std::to_string(meshing.angle_rad) + ", expected both above 0");
     const std::lock_guard lock(cad_mutex());
     // What OpenCASCADE has to say would go to standard output, where data belongs.

@@ -4,21 +4,17 @@
 #include <string_view>
 
 #include "core/base/run_control.h"
+#include "formats/cad_meshing.h"
 #include "formats/mesh_data.h"
 
 namespace fretwork {
 
 enum class CadFormat { kStep, kIges, kBrep };
 
-/// How finely curved faces are broken into triangles.
-struct CadMeshing {
-    double deviation_share = 5e-4;  ///< largest distance from the true face, as a share of the box's diagonal
-    double angle_rad = 0.2;         ///< largest turn of the normal along an edge
-};
-
 /// All faces of the file as one mesh; corners on shared edges become one vertex, so that a solid comes
 /// out closed. STEP and IGES are converted to millimetres, BREP is taken to be in millimetres. Every
-/// solid becomes a part.
+/// solid becomes a part. Faces keep the numbers that FreeCAD shows for the same shape: the order in which its
+/// explorer meets them, faces shared by two solids once.
 /// The same file always gives the same mesh. A stop is honoured between reading, meshing and collecting.
 /// \throws InvalidInput  not readable, without faces, or with a face that cannot be broken into triangles.
 /// \throws InvalidSetting  a deviation or angle that is not positive.

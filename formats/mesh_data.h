@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@
 
 namespace fretwork {
 
-/// A named run of triangles: a solid of an STL, an object or group of an OBJ, a build item of a 3MF.
+/// A named run of triangles: a solid of an STL, an object or group of an OBJ, a build item of a 3MF, a face of a CAD
+/// model.
 struct MeshPart {
     std::string name;
     std::uint32_t first_triangle = 0;
@@ -23,6 +25,9 @@ struct MeshFile {
     TriangleMesh mesh;
     std::vector<Rgb8> triangle_colors;  ///< sRGB, one per triangle; empty when the file has no colours
     std::vector<MeshPart> parts;        ///< cover all triangles in order; empty when the file names none
+    /// Faces of a CAD model, named as FreeCAD does: "Face1" is the first. They cover all triangles in order.
+    std::vector<MeshPart> faces;
+    std::vector<std::filesystem::path> read_beside;  ///< other files that were read: materials of an OBJ
     LengthUnit unit = LengthUnit::kMillimeter;
     std::vector<std::string> warnings;  ///< what was skipped or had to be guessed
 };

@@ -5,9 +5,13 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "formats/amf_reader.h"
+#include "formats/amf_writer.h"
 #include "formats/atomic_write.h"
 #include "formats/cad_reader.h"
 #include "formats/carved_threemf_writer.h"
+#include "formats/glb_writer.h"
+#include "formats/obj_materials.h"
 #include "formats/obj_reader.h"
 #include "formats/obj_writer.h"
 #include "formats/off_reader.h"
@@ -23,12 +27,14 @@
 namespace fretwork {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, MeshFormat>, 11> kFormats = {{
+constexpr std::array<std::pair<std::string_view, MeshFormat>, 13> kFormats = {{
     {"stl", MeshFormat::kStl},
     {"obj", MeshFormat::kObj},
     {"ply", MeshFormat::kPly},
     {"off", MeshFormat::kOff},
     {"3mf", MeshFormat::kThreemf},
+    {"amf", MeshFormat::kAmf},
+    {"glb", MeshFormat::kGlb},
     {"step", MeshFormat::kStep},
     {"stp", MeshFormat::kStep},
     {"iges", MeshFormat::kIges},
@@ -37,15 +43,17 @@ constexpr std::array<std::pair<std::string_view, MeshFormat>, 11> kFormats = {{
     {"brp", MeshFormat::kBrep},
 }};
 
-MeshFile read_cad_format(std::string_view bytes, MeshFormat format, std::string_view source, const RunControl& run) {
+MeshFile read_cad_format(std::string_view bytes, MeshFormat format, std::string_view source, const CadMeshing& meshing,
+                         const RunControl& run) {
 #ifdef FRETWORK_STEP
     const CadFormat cad = format == MeshFormat::kStep   ? CadFormat::kStep
                           : format == MeshFormat::kIges ? CadFormat::kIges
                                                         : CadFormat::kBrep;
-    return read_cad(bytes, cad, source, {}, run);
+    return read_cad(bytes, cad, source, meshing, run);
 #else
     static_cast<void>(bytes);
     static_cast<void>(format);
+    static_cast<void>(meshing);
     run.throw_if_stopped();
     throw InvalidSetting(std::string(source) + ": found a CAD model, expected a mesh: built without OpenCASCADE");
 #endif
@@ -79,44 +87,67 @@ MeshFormat mesh_format_from_path(const std::filesystem::path& path) {
     }
 }
 
-MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view source, LengthUnit unit,
-                   const RunControl& run) {
-    MeshFile file;
+namespace {
+
+MeshFile read_format(std::string_view bytes, MeshFormat format, std::string_view source, const CadMeshing& meshing,
+                     const ObjMaterialFiles& materials, const RunControl& run) {
     switch (format) {
         case MeshFormat::kStl:
-            file = read_stl(bytes, source, run);
-            break;
+            return read_stl(bytes, source, run);
         case MeshFormat::kObj:
-            file = read_obj(bytes, source, run);
-            break;
+            return read_obj(bytes, source, materials, run);
         case MeshFormat::kPly:
-            file = read_ply(bytes, source, run);
-            break;
+            return read_ply(bytes, source, run);
         case MeshFormat::kOff:
-            file = read_off(bytes, source, run);
-            break;
+            return read_off(bytes, source, run);
         case MeshFormat::kThreemf:
-            file = read_threemf(bytes, source, run);
-            break;
+            return read_threemf(bytes, source, run);
+        case MeshFormat::kAmf:
+            return read_amf(bytes, source, run);
         case MeshFormat::kStep:
         case MeshFormat::kIges:
         case MeshFormat::kBrep:
-            file = read_cad_format(bytes, format, source, run);
+            return read_cad_format(bytes, format, source, meshing, run);
+        case MeshFormat::kGlb:
             break;
     }
+    throw InvalidSetting(std::string(source) + ": found GLB, which is only written, expected a format to read");
+}
+
+MeshFile read_with(std::string_view bytes, MeshFormat format, std::string_view source, const MeshReadOptions& options,
+                   const ObjMaterialFiles& materials, const RunControl& run) {
+    MeshFile file = read_format(bytes, format, source, options.cad, materials, run);
     if (file.mesh.triangles.empty())
         fail_parse(source, place_of_byte(bytes.size()), "no triangle in the whole file", "at least one");
-    const bool has_unit = format == MeshFormat::kThreemf || format == MeshFormat::kStep || format == MeshFormat::kIges;
-    if (!has_unit && unit != LengthUnit::kMillimeter) {
-        file.unit = unit;
-        for (Vec3& p : file.mesh.positions_mm) p *= millimeters_per(unit);
+    const bool has_unit = format == MeshFormat::kThreemf || format == MeshFormat::kAmf || format == MeshFormat::kStep ||
+                          format == MeshFormat::kIges;
+    if (!has_unit && options.unit != LengthUnit::kMillimeter) {
+        file.unit = options.unit;
+        for (Vec3& p : file.mesh.positions_mm) p *= millimeters_per(options.unit);
     }
     return file;
 }
 
+}  // namespace
+
+MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view source, const MeshReadOptions& options,
+                   const RunControl& run) {
+    return read_with(bytes, format, source, options, {}, run);
+}
+
 MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options, const RunControl& run) {
     const MeshFormat format = options.format ? *options.format : mesh_format_from_path(path);
-    return read_mesh(read_file(path), format, path.string(), options.unit, run);
+    std::vector<std::filesystem::path> beside;
+    const ObjMaterialFiles materials = [&](std::string_view name) -> std::optional<std::string> {
+        const std::filesystem::path file = path.parent_path() / std::filesystem::path(name).filename();
+        std::error_code none;
+        if (!std::filesystem::is_regular_file(file, none)) return std::nullopt;
+        beside.push_back(file);
+        return read_file(file);
+    };
+    MeshFile file = read_with(read_file(path), format, path.string(), options, materials, run);
+    file.read_beside = std::move(beside);
+    return file;
 }
 
 std::string write_mesh(const MeshToWrite& input, MeshFormat format) {
@@ -131,16 +162,40 @@ std::string write_mesh(const MeshToWrite& input, MeshFormat format) {
             return write_off(input);
         case MeshFormat::kThreemf:
             return write_threemf(input);
+        case MeshFormat::kAmf:
+            return write_amf(input);
+        case MeshFormat::kGlb:
+            return write_glb(input);
         case MeshFormat::kStep:
         case MeshFormat::kIges:
         case MeshFormat::kBrep:
             break;
     }
-    throw InvalidSetting("mesh format: found a CAD format, expected one that holds triangles: stl, obj, ply, off, 3mf");
+    throw InvalidSetting(
+        "mesh format: found a CAD format, expected one that holds triangles: stl, obj, ply, off, 3mf, amf, glb");
+}
+
+std::filesystem::path obj_materials_path(const std::filesystem::path& path) {
+    std::string name = path.stem().string() + ".mtl";
+    // A name of several words would name several libraries.
+    for (char& c : name)
+        if (static_cast<unsigned char>(c) <= ' ' || c == '#' || c == '\\') c = '_';
+    return std::filesystem::path(path).replace_filename(name);
 }
 
 void write_mesh(const std::filesystem::path& path, const MeshToWrite& input, std::optional<MeshFormat> format) {
-    atomic_write(path, write_mesh(input, format ? *format : mesh_format_from_path(path)));
+    const MeshFormat chosen = format ? *format : mesh_format_from_path(path);
+    if (chosen != MeshFormat::kObj || input.triangle_colors.empty()) {
+        atomic_write(path, write_mesh(input, chosen));
+        return;
+    }
+    MeshToWrite with_materials = input;
+    const std::filesystem::path materials = obj_materials_path(path);
+    const std::string name = materials.filename().string();
+    with_materials.obj_materials = name;
+    const std::string bytes = write_mesh(with_materials, chosen);
+    atomic_write(materials, write_obj_materials(input.triangle_colors));
+    atomic_write(path, bytes);
 }
 
 }  // namespace fretwork

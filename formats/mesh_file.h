@@ -8,15 +8,16 @@
 #include <vector>
 
 #include "core/base/run_control.h"
+#include "formats/cad_meshing.h"
 #include "formats/mesh_data.h"
 #include "formats/mesh_writer_input.h"
 
 namespace fretwork {
 
-/// STEP, IGES and BREP can be read only, and only by builds with FRETWORK_STEP.
-enum class MeshFormat { kStl, kObj, kPly, kOff, kThreemf, kStep, kIges, kBrep };
+/// STEP, IGES and BREP can be read only, and only by builds with FRETWORK_STEP; GLB can be written only.
+enum class MeshFormat { kStl, kObj, kPly, kOff, kThreemf, kAmf, kGlb, kStep, kIges, kBrep };
 
-/// "stl", "obj", "ply", "off", "3mf", "step" or "stp", "iges" or "igs", "brep" or "brp"; case and a
+/// "stl", "obj", "ply", "off", "3mf", "amf", "glb", "step" or "stp", "iges" or "igs", "brep" or "brp"; case and a
 /// leading dot do not matter.
 /// \throws InvalidSetting  naming the known ones.
 MeshFormat mesh_format_from_name(std::string_view name);
@@ -25,8 +26,9 @@ MeshFormat mesh_format_from_name(std::string_view name);
 MeshFormat mesh_format_from_path(const std::filesystem::path& path);
 
 struct MeshReadOptions {
-    std::optional<MeshFormat> format;           ///< empty: from the extension
+    std::optional<MeshFormat> format = {};      ///< empty: from the extension
     LengthUnit unit = LengthUnit::kMillimeter;  ///< of formats that name none (STL, OBJ, PLY, OFF, BREP)
+    CadMeshing cad = {};                        ///< how finely STEP, IGES and BREP are broken into triangles
 };
 
 /// Limits: files up to 4 GiB, coordinates up to 1e9 in size.
@@ -35,15 +37,20 @@ struct MeshReadOptions {
 /// \throws FileError       cannot be opened.
 MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {}, const RunControl& run = {});
 
-/// The same from memory. \param source  name for messages, such as "standard input"
+/// The same from memory; `options.format` is not looked at, and an OBJ goes without its materials.
+/// \param source  name for messages, such as "standard input"
 MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view source,
-                   LengthUnit unit = LengthUnit::kMillimeter, const RunControl& run = {});
+                   const MeshReadOptions& options = {}, const RunControl& run = {});
 
 /// The bytes of the file; the same input always gives the same bytes.
 /// \throws InvalidInput  see check_mesh_to_write. \throws InvalidSetting  a format that is only read.
 std::string write_mesh(const MeshToWrite& input, MeshFormat format);
 
-/// Whole or not at all (`atomic_write.h`). \throws FileError, InvalidInput
+/// The file that holds the colours of an OBJ at `path`: beside it, with the extension mtl and without blanks.
+std::filesystem::path obj_materials_path(const std::filesystem::path& path);
+
+/// Whole or not at all (`atomic_write.h`). The materials of a coloured OBJ go into a file beside it.
+/// \throws FileError, InvalidInput
 void write_mesh(const std::filesystem::path& path, const MeshToWrite& input,
                 std::optional<MeshFormat> format = std::nullopt);
 

@@ -23,6 +23,8 @@ struct MeshToWrite {
     std::span<const Rgb8> triangle_colors = {};  ///< one per triangle, or empty
     std::string_view name = {};
     CoordinatePrecision precision = CoordinatePrecision::kFloat;
+    /// Name of the file that holds the materials of an OBJ; empty: its colours are left out.
+    std::string_view obj_materials = {};
 };
 
 /// Checks what all writers need. \throws InvalidInput  an index past the end, a coordinate that is not

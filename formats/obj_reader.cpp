@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 
 #include "formats/color_channel.h"
+#include "formats/obj_materials.h"
 #include "formats/parse_error.h"
 #include "formats/polygon_fan.h"
 #include "formats/text_scanner.h"
@@ -17,8 +20,11 @@ constexpr std::size_t kStopEvery = 1 << 14;
 
 class ObjReader {
   public:
-    ObjReader(std::string_view bytes, std::string_view source, const RunControl& run)
-        : scanner_(bytes, source, {.comment = '#', .backslash_continues = true}), source_(source), run_(run) {}
+    ObjReader(std::string_view bytes, std::string_view source, const ObjMaterialFiles& files, const RunControl& run)
+        : scanner_(bytes, source, {.comment = '#', .backslash_continues = true}),
+          source_(source),
+          files_(files),
+          run_(run) {}
 
     MeshFile read() {
         std::size_t lines = 0;
@@ -39,11 +45,25 @@ class ObjReader {
             read_face();
         } else if (word == "o" || word == "g") {
             start_part();
-        } else if (word == "mtllib" || word == "usemtl") {
-            materials_skipped_ = true;
+        } else if (word == "mtllib") {
+            read_libraries();
+        } else if (word == "usemtl") {
+            const auto known = materials_.find(scanner_.word_in_line());
+            material_ = known == materials_.end() ? std::nullopt : std::optional<Rgb8>(known->second);
         } else if (word != "vt" && word != "vn" && word != "vp" && word != "s" && word != "l" && word != "p") {
             if (word.size() > 16 || skipped_.size() > 8) scanner_.fail(word, "an OBJ statement");
             skipped_.emplace(word);
+        }
+    }
+
+    void read_libraries() {
+        for (std::string_view name = scanner_.word_in_line(); !name.empty(); name = scanner_.word_in_line()) {
+            const std::optional<std::string> bytes = files_ ? files_(name) : std::nullopt;
+            if (!bytes) {
+                file_.warnings.push_back("materials " + in_quotes(name) + " were not found beside the OBJ file");
+                continue;
+            }
+            materials_.merge(read_obj_materials(*bytes, std::string(source_) + ": " + std::string(name)));
         }
     }
 
@@ -80,6 +100,10 @@ class ObjReader {
                 file_.mesh.triangles.push_back({corners_[0], corners_[i], corners_[i + 1]});
         }
         if (file_.mesh.triangles.size() == before) ++empty_faces_;
+        if (material_) {
+            material_colors_.resize(before);
+            material_colors_.resize(file_.mesh.triangles.size(), material_);
+        }
     }
 
     std::uint32_t vertex_of(std::string_view word) {
@@ -123,7 +147,11 @@ class ObjReader {
             colors_.resize(file_.mesh.positions_mm.size(), kUncolored);
             file_.triangle_colors = mean_of_corners(file_.mesh.triangles, colors_);
         }
-        if (materials_skipped_) file_.warnings.emplace_back("materials are not read from OBJ files");
+        if (!material_colors_.empty()) {
+            file_.triangle_colors.resize(file_.mesh.triangles.size(), kUncolored);
+            for (std::size_t t = 0; t < material_colors_.size(); ++t)
+                if (material_colors_[t]) file_.triangle_colors[t] = *material_colors_[t];
+        }
         if (empty_faces_ > 0)
             file_.warnings.push_back(std::to_string(empty_faces_) + " faces with fewer than three different corners");
         for (const std::string& word : skipped_) file_.warnings.push_back("OBJ statements skipped: " + in_quotes(word));
@@ -131,6 +159,7 @@ class ObjReader {
 
     TextScanner scanner_;
     std::string_view source_;
+    const ObjMaterialFiles& files_;
     const RunControl& run_;
     MeshFile file_;
     std::vector<Rgb8> colors_;  ///< of vertices; shorter than the positions while the last ones have none
@@ -138,14 +167,17 @@ class ObjReader {
     std::int64_t highest_ = -1;  ///< vertex named by a face, and where
     std::size_t highest_line_ = 0;
     std::size_t empty_faces_ = 0;
-    bool materials_skipped_ = false;
+    std::map<std::string, Rgb8, std::less<>> materials_;
+    std::optional<Rgb8> material_;                      ///< in use
+    std::vector<std::optional<Rgb8>> material_colors_;  ///< of triangles; shorter while the last ones have none
     std::set<std::string> skipped_;
 };
 
 }  // namespace
 
-MeshFile read_obj(std::string_view bytes, std::string_view source, const RunControl& run) {
-    return ObjReader(bytes, source, run).read();
+MeshFile read_obj(std::string_view bytes, std::string_view source, const ObjMaterialFiles& materials,
+                  const RunControl& run) {
+    return ObjReader(bytes, source, materials, run).read();
 }
 
 }  // namespace fretwork

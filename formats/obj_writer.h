@@ -7,7 +7,8 @@
 
 namespace fretwork {
 
-/// Text. Colours are not written: OBJ has none that belong to triangles without a second file.
+/// Text. Colours are named by material where `obj_materials` names the file that describes them
+/// (`write_obj_materials`), and left out otherwise.
 /// \throws InvalidInput  see check_mesh_to_write.
 std::string write_obj(const MeshToWrite& input);
 

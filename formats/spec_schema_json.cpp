@@ -75,6 +75,10 @@ Json table_schema(const TableInfo& table) {
             properties[key.key] = region_key_schema(key);
             required.push_back(key.key);
         }
+        for (const RegionKeyInfo& key : shape.texts) {
+            properties[key.key] = {{"type", "string"}, {"description", key.help}};
+            required.push_back(key.key);
+        }
         for (const RegionKeyInfo& key : table.numbers) properties[key.key] = region_key_schema(key);
         for (const RegionKeyInfo& key : table.texts)
             properties[key.key] = {{"type", "string"}, {"description", key.help}};

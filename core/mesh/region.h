@@ -39,6 +39,10 @@ struct OpenBorderRegion {
 struct TriangleSetRegion {
     std::vector<std::uint32_t> triangles;
 };
+/// Faces of a CAD model and parts of a file, by name. Turned into a TriangleSetRegion before it is asked.
+struct NamedRegion {
+    std::vector<std::string> names;
+};
 struct LowestRegion {
     double share;
 };  ///< lowest part of the height (z), share in (0, 1]
@@ -47,8 +51,15 @@ struct EverywhereRegion {};
 struct Region {
     std::string name;
     std::variant<BoxRegion, SphereRegion, CylinderRegion, HalfSpaceRegion, PlaneBandRegion, SharpEdgeRegion,
-                 OpenBorderRegion, TriangleSetRegion, LowestRegion, EverywhereRegion>
+                 OpenBorderRegion, TriangleSetRegion, NamedRegion, LowestRegion, EverywhereRegion>
         shape;
+};
+
+/// Triangles of a model that have a name: a face of a CAD model, a part of a file.
+struct NamedTriangles {
+    std::string name;
+    std::uint32_t first_triangle = 0;
+    std::uint32_t triangle_count = 0;
 };
 
 /// Regions prepared against one mesh for many queries. Safe to query from several threads.

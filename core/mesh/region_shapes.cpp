@@ -201,6 +201,10 @@ struct Preparer {
                      " triangles");
         return std::make_unique<TriangleSet>(mesh, set.triangles);
     }
+    Result operator()(const NamedRegion&) const {
+        need(false, region, "names faces or parts, and this mesh has none");
+        return nullptr;
+    }
     Result operator()(const LowestRegion& lowest) const {
         need(lowest.share > 0.0 && lowest.share <= 1.0, region,
              "share is " + std::to_string(lowest.share) + "; expected more than 0 and at most 1");

@@ -8,6 +8,7 @@
 
 #include "core/base/run_control.h"
 #include "core/exemplar/exemplar.h"
+#include "core/mesh/region.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/pipeline/run_report.h"
 #include "core/pipeline/settings.h"
@@ -20,8 +21,9 @@ struct CarveInput {
     TriangleMesh mesh;       ///< as it was read; `input.scale` and `input.size_mm` apply to it
     std::string model_name;  ///< for messages and the report
     Exemplar exemplar;
-    std::optional<double> exemplar_width_mm;  ///< natural width of the exemplar, if it has one
-    std::string exemplar_name;                ///< for messages and the report
+    std::optional<double> exemplar_width_mm;           ///< natural width of the exemplar, if it has one
+    std::string exemplar_name;                         ///< for messages and the report
+    std::vector<NamedTriangles> named_triangles = {};  ///< faces and parts of `mesh` that regions may name
 };
 
 /// What this run may use. Does not change what comes out.

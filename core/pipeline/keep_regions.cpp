@@ -2,20 +2,49 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
 namespace fretwork {
 namespace {
 
-void turn_to(const std::vector<std::uint32_t>& source_triangles, std::size_t file_triangles, Region& region) {
+std::string some_names(const std::vector<NamedTriangles>& named) {
+    constexpr std::size_t kMost = 12;
+    if (named.empty()) return "none";
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < std::min(named.size(), kMost); ++i) names.push_back(named[i].name);
+    return fmt::format("{}{}", fmt::join(names, ", "), named.size() > kMost ? ", ..." : "");
+}
+
+/// Triangles of the file that the region names; several things of one name all belong to it.
+std::vector<std::uint32_t> triangles_named(const NamedRegion& region, const std::string& region_name,
+                                           const FileTriangles& file) {
+    std::vector<std::uint32_t> triangles;
+    for (const std::string& name : region.names) {
+        const std::size_t before = triangles.size();
+        for (const NamedTriangles& named : file.named) {
+            if (named.name != name) continue;
+            for (std::uint32_t t = 0; t < named.triangle_count; ++t) triangles.push_back(named.first_triangle + t);
+        }
+        if (triangles.size() == before)
+            throw InvalidSetting(fmt::format("region '{}' names '{}', and the model has: {}", region_name, name,
+                                             some_names(file.named)));
+    }
+    return triangles;
+}
+
+void turn_to(const std::vector<std::uint32_t>& source_triangles, const FileTriangles& file, Region& region) {
+    if (const auto* named = std::get_if<NamedRegion>(&region.shape))
+        region.shape = TriangleSetRegion{triangles_named(*named, region.name, file)};
     auto* set = std::get_if<TriangleSetRegion>(&region.shape);
     if (!set) return;
-    std::vector<std::uint8_t> wanted(file_triangles, 0);
+    std::vector<std::uint8_t> wanted(file.count, 0);
     for (const std::uint32_t t : set->triangles) {
-        if (t >= file_triangles)
+        if (t >= file.count)
             throw InvalidSetting(
-                fmt::format("region '{}' names triangle {}, and the model has {}", region.name, t, file_triangles));
+                fmt::format("region '{}' names triangle {}, and the model has {}", region.name, t, file.count));
         wanted[t] = 1;
     }
     set->triangles.clear();
@@ -27,9 +56,9 @@ void turn_to(const std::vector<std::uint32_t>& source_triangles, std::size_t fil
 
 }  // namespace
 
-Settings with_triangles_of(const std::vector<std::uint32_t>& source_triangles, std::size_t file_triangles,
+Settings with_triangles_of(const std::vector<std::uint32_t>& source_triangles, const FileTriangles& file,
                            Settings settings) {
-    const auto turn = [&](Region& region) { turn_to(source_triangles, file_triangles, region); };
+    const auto turn = [&](Region& region) { turn_to(source_triangles, file, region); };
     for (Region& region : settings.keep) turn(region);
     for (Region& region : settings.carve) turn(region);
     for (LoadOption& load : settings.loads) turn(load.region);

@@ -11,10 +11,17 @@
 
 namespace fretwork {
 
-/// The settings with triangle sets, which name triangles of the file, turned to those of the repaired mesh.
+/// What regions may refer to in the model as it was read.
+struct FileTriangles {
+    std::size_t count = 0;
+    const std::vector<NamedTriangles>& named;
+};
+
+/// The settings with triangle sets and named regions, which speak of the file, turned to triangles of the repaired
+/// mesh.
 /// \param source_triangles  triangle of the file that each triangle of the mesh is part of
-/// \throws InvalidSetting   a triangle that the file does not have, or none of a set left
-Settings with_triangles_of(const std::vector<std::uint32_t>& source_triangles, std::size_t file_triangles,
+/// \throws InvalidSetting   a triangle or name that the file does not have, or none of a set left
+Settings with_triangles_of(const std::vector<std::uint32_t>& source_triangles, const FileTriangles& file,
                            Settings settings);
 
 /// The regions of [[keep]], and the complement of those of [[carve]] where there are any.

@@ -116,6 +116,21 @@ TriangleSetRegion read_triangles(TableReader& in) {
     return region;
 }
 
+NamedRegion read_names(TableReader& in) {
+    NamedRegion region;
+    const std::string all = in.text("names").value_or(std::string{});
+    for (std::size_t at = 0; at <= all.size();) {
+        const std::size_t comma = std::min(all.find(',', at), all.size());
+        const std::size_t first = std::min(all.find_first_not_of(' ', at), comma);
+        const std::string name = all.substr(first, comma - first);
+        if (!name.empty()) region.names.push_back(name.substr(0, name.find_last_not_of(' ') + 1));
+        at = comma + 1;
+    }
+    if (region.names.empty())
+        throw InvalidSetting(in.where() + ": a region of shape 'named' needs 'names', such as \"Face1, Face2\"");
+    return region;
+}
+
 Region read_region(TableReader& in) {
     Region region;
     region.name = in.text("name").value_or(std::string{});
@@ -139,6 +154,8 @@ Region read_region(TableReader& in) {
         region.shape = OpenBorderRegion{width("half_width_mm")};
     else if (shape == "triangles")
         region.shape = read_triangles(in);
+    else if (shape == "named")
+        region.shape = read_names(in);
     else if (shape == "lowest") {
         const double share = width("share");
         if (share > 1) throw InvalidSetting(fmt::format("{}: share = {:g}: expected at most 1", in.where(), share));
@@ -160,7 +177,9 @@ std::vector<std::string> known_keys(const TableInfo& info, const Region& region)
     std::vector<std::string> known = {"name", "shape"};
     for (const RegionKeyInfo& key : info.numbers) known.push_back(key.key);
     for (const RegionKeyInfo& key : info.texts) known.push_back(key.key);
-    for (const RegionKeyInfo& key : region_shapes()[region.shape.index()].keys) known.push_back(key.key);
+    const RegionShapeInfo& shape = region_shapes()[region.shape.index()];
+    for (const auto* list : {&shape.keys, &shape.texts})
+        for (const RegionKeyInfo& key : *list) known.push_back(key.key);
     return known;
 }
 
@@ -198,6 +217,7 @@ struct ShapeWriter {
     void operator()(const TriangleSetRegion& r) const {
         put("triangles", std::vector<double>(r.triangles.begin(), r.triangles.end()));
     }
+    void operator()(const NamedRegion& r) const { put("names", fmt::format("{}", fmt::join(r.names, ", "))); }
     void operator()(const LowestRegion& r) const { put("share", r.share); }
     void operator()(const EverywhereRegion&) const {}
 };
@@ -252,6 +272,11 @@ std::span<const RegionShapeInfo> region_shapes() {
          "Triangles of the model by number.",
          {{"triangles", 0, "Their numbers in the file, counted from 0."}},
          "triangles = [0, 1, 2]"},
+        {"named",
+         "Faces of a CAD model, parts or objects of a file, by name.",
+         {},
+         "names = \"Face3, Face12\"",
+         {{"names", 1, "Names, with commas between them."}}},
         {"lowest",
          "The lowest part of the model.",
          {{"share", 1, "Of the height, above 0 and up to 1."}},

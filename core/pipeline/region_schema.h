@@ -19,8 +19,9 @@ struct RegionKeyInfo {
 struct RegionShapeInfo {
     std::string shape;  ///< value of the key `shape`: "sphere"
     std::string help;
-    std::vector<RegionKeyInfo> keys;  ///< all required
-    std::string example;              ///< as in a spec, without `shape`
+    std::vector<RegionKeyInfo> keys;        ///< that hold numbers; all required
+    std::string example;                    ///< as in a spec, without `shape`
+    std::vector<RegionKeyInfo> texts = {};  ///< that hold text; all required
 };
 
 struct TableInfo {

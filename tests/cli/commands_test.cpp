@@ -67,7 +67,7 @@ TEST_CASE("cli: help and version go to stdout and exit with 0", "[cli]") {
 TEST_CASE("cli: carve writes every format, streams equal files, runs repeat", "[cli][determinism]") {
     const TemporaryFolder folder;
     spit(folder / "vase.off", vase_off());
-    for (const char* extension : {"3mf", "stl", "obj", "ply", "off"}) {
+    for (const char* extension : {"3mf", "stl", "obj", "ply", "off", "amf"}) {
         CAPTURE(extension);
         const std::string target = folder / (std::string("out.") + extension);
         const ProgramResult file =
@@ -235,6 +235,50 @@ TEST_CASE("cli: convert keeps the mesh and scales units", "[cli]") {
     const ProgramResult stream =
         run_program({"convert", "-", "-", "--input-format", "off", "--export-format", "off"}, vase_off());
     CHECK(stream.out == vase_off());
+}
+
+TEST_CASE("cli: an OBJ takes its colours along and make knows of them", "[cli]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.mtl", "newmtl clay\nKd 0.8 0.4 0.2\n");
+    const std::string obj = write_mesh({testing::make_vase(50.0, 32, 16)}, MeshFormat::kObj);
+    spit(folder / "vase.obj", "mtllib vase.mtl\nusemtl clay\n" + obj);
+    REQUIRE(run_program({"convert", folder / "vase.obj", folder / "copy.obj"}).exit_code == 0);
+    const MeshFile copy = read_mesh(std::filesystem::path(folder / "copy.obj"));
+    REQUIRE(copy.triangle_colors.size() == copy.mesh.triangles.size());
+    CHECK(copy.triangle_colors[0] == Rgb8{204, 102, 51});
+    CHECK(folder.names() == std::vector<std::string>{"copy.mtl", "copy.obj", "vase.mtl", "vase.obj"});
+    REQUIRE(run_program(carve_line({folder / "vase.obj", "--pattern", "cells", "-o", folder / "out.stl", "-d",
+                                    folder / "out.d"}))
+                .exit_code == 0);
+    CHECK(slurp(folder / "out.d").find("vase.mtl") != std::string::npos);
+}
+
+TEST_CASE("cli: a region may name a part of the file", "[cli]") {
+    const TemporaryFolder folder;
+    const TriangleMesh vase = testing::make_vase(50.0, 32, 16);
+    std::string obj = write_mesh({vase}, MeshFormat::kObj);
+    std::size_t half = obj.find("\nf ");
+    for (std::size_t t = 0; t < vase.triangles.size() / 2; ++t) half = obj.find("\nf ", half + 1);
+    obj.insert(obj.find("\nf "), "\no first half");
+    obj.insert(obj.find("\nf ", half + 5), "\no second");
+    spit(folder / "vase.obj", obj);
+    const auto with_region = [&](const std::string& names) {
+        spit(folder / "s.toml",
+             "[exemplar]\npattern = \"cells\"\n[[keep]]\nshape = \"named\"\nnames = \"" + names + "\"\n");
+        return run_program(carve_line({folder / "vase.obj", "--pattern", folder / "s.toml", "-o", folder / "out.stl",
+                                       "--summary", folder / "out.json"}));
+    };
+    const ProgramResult kept = with_region("first half");
+    CAPTURE(kept.err);
+    REQUIRE(kept.exit_code == 0);
+    const Json summary = Json::parse(slurp(folder / "out.json"));
+    const double share =
+        summary["pattern"]["kept_voxels"].get<double>() / summary["shell"]["surface_voxels"].get<double>();
+    CHECK(share > 0.2);
+    CHECK(share < 0.8);
+    const ProgramResult unknown = with_region("lid");
+    CHECK(unknown.exit_code == 1);
+    CHECK(unknown.err.find("first half, second") != std::string::npos);
 }
 
 TEST_CASE("cli: render draws sheets of views", "[cli]") {

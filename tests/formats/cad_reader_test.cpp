@@ -3,11 +3,16 @@
 
 #include <unistd.h>
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBndLib.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepTools.hxx>
+#include <Bnd_Box.hxx>
 #include <STEPControl_Writer.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <numbers>
@@ -78,6 +83,54 @@ TEST_CASE("cad: a finer deviation comes closer to a sphere", "[formats][cad]") {
     }
 }
 
+TEST_CASE("cad: faces keep the numbers of the shape's own order", "[formats][cad]") {
+    const TopoDS_Shape shape = plate();
+    const MeshFile file = read_cad(brep_of(shape), CadFormat::kBrep, "plate.brep");
+    REQUIRE(file.faces.size() == 7);
+    TopTools_IndexedMapOfShape faces;
+    TopExp::MapShapes(shape, TopAbs_FACE, faces);
+    std::uint32_t next = 0;
+    for (const MeshPart& face : file.faces) {
+        CAPTURE(face.name);
+        CHECK(face.first_triangle == next);
+        next += face.triangle_count;
+        // The triangles lie within the box of the face of that number.
+        const int number = std::stoi(face.name.substr(4));
+        Bnd_Box box;
+        BRepBndLib::Add(faces(number), box);
+        box.Enlarge(1e-3);
+        for (std::uint32_t t = 0; t < face.triangle_count; ++t)
+            for (const std::uint32_t v : file.mesh.triangles[face.first_triangle + t]) {
+                const Vec3& p = file.mesh.positions_mm[v];
+                CHECK_FALSE(box.IsOut(gp_Pnt(p[0], p[1], p[2])));
+            }
+    }
+    CHECK(next == file.mesh.triangles.size());
+    // The hole is the one face that is curved: of 16 or more sides.
+    CHECK(std::count_if(file.faces.begin(), file.faces.end(),
+                        [](const MeshPart& f) { return f.triangle_count >= 32; }) >= 1);
+}
+
+TEST_CASE("cad: a deviation in millimetres bounds the distance from the true face", "[formats][cad]") {
+    const std::string bytes = brep_of(BRepPrimAPI_MakeSphere(10.0).Shape());
+    std::size_t last = 0;
+    for (const double deviation : {0.4, 0.1, 0.02}) {
+        CadMeshing meshing;
+        meshing.angle_rad = 1.0;
+        meshing.deviation_mm = deviation;
+        const MeshFile file = read_cad(bytes, CadFormat::kBrep, "ball", meshing);
+        double deepest = 0.0;
+        for (const Triangle& t : file.mesh.triangles) {
+            Vec3 center = Vec3::Zero();
+            for (const std::uint32_t v : t) center += file.mesh.positions_mm[v] / 3.0;
+            deepest = std::max(deepest, 10.0 - center.norm());
+        }
+        CHECK(deepest <= 1.5 * deviation);
+        CHECK(file.mesh.triangles.size() > last);
+        last = file.mesh.triangles.size();
+    }
+}
+
 TEST_CASE("cad: the same file gives the same mesh", "[formats][cad][determinism]") {
     const std::string bytes = brep_of(plate());
     const MeshFile first = read_cad(bytes, CadFormat::kBrep, "a"), second = read_cad(bytes, CadFormat::kBrep, "b");
@@ -99,7 +152,8 @@ TEST_CASE("cad: what cannot be read is refused", "[formats][cad][errors]") {
 
 TEST_CASE("cad: chosen by extension, read only", "[formats][cad]") {
     CHECK(mesh_format_from_path("a.STP") == MeshFormat::kStep);
-    CHECK(read_mesh(brep_of(plate()), MeshFormat::kBrep, "m", LengthUnit::kCentimeter).mesh.positions_mm.size() > 8);
+    CHECK(read_mesh(brep_of(plate()), MeshFormat::kBrep, "m", {.unit = LengthUnit::kCentimeter})
+              .mesh.positions_mm.size() > 8);
     CHECK_THROWS_AS(write_mesh({TriangleMesh{}}, MeshFormat::kStep), InvalidSetting);
 }
 

@@ -177,7 +177,8 @@ TEST_CASE("ply: both byte orders and triangle strips", "[formats]") {
 }
 
 TEST_CASE("mesh files: the unit of a file without units is the caller's to say", "[formats]") {
-    const MeshFile file = read_mesh("v 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 2 3\n", MeshFormat::kObj, "m", LengthUnit::kInch);
+    const MeshFile file =
+        read_mesh("v 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 2 3\n", MeshFormat::kObj, "m", {.unit = LengthUnit::kInch});
     CHECK(file.mesh.positions_mm[1] == Vec3(0, 2 * 25.4, 0));
     CHECK(file.unit == LengthUnit::kInch);
 }
@@ -269,7 +270,7 @@ TEST_CASE("mesh files: reading stops when asked", "[formats][cancel]") {
     for (const MeshFormat format :
          {MeshFormat::kStl, MeshFormat::kPly, MeshFormat::kOff, MeshFormat::kObj, MeshFormat::kThreemf}) {
         const std::string bytes = write_mesh({mesh}, format);
-        CHECK_THROWS_AS(read_mesh(bytes, format, "m", LengthUnit::kMillimeter, run), Cancelled);
+        CHECK_THROWS_AS(read_mesh(bytes, format, "m", {.unit = LengthUnit::kMillimeter}, run), Cancelled);
     }
 }
 

@@ -19,8 +19,8 @@ using testing::make_box;
 using testing::make_icosphere;
 using testing::make_square;
 
-constexpr std::array<MeshFormat, 5> kAll = {MeshFormat::kStl, MeshFormat::kObj, MeshFormat::kPly, MeshFormat::kOff,
-                                            MeshFormat::kThreemf};
+constexpr std::array<MeshFormat, 6> kAll = {MeshFormat::kStl, MeshFormat::kObj,     MeshFormat::kPly,
+                                            MeshFormat::kOff, MeshFormat::kThreemf, MeshFormat::kAmf};
 
 double random_unit(std::uint64_t seed, std::uint64_t item, std::uint32_t draw) {
     return unit_interval(counter_random(seed, RandomStream::kTest, 1, item, draw));
@@ -81,7 +81,7 @@ TEST_CASE("mesh files: every format gives back the floats it was given", "[forma
 
 TEST_CASE("mesh files: formats with double precision keep every bit", "[formats][property]") {
     const auto seed = GENERATE(range<std::uint64_t>(1, 7));
-    const MeshFormat format = GENERATE(MeshFormat::kObj, MeshFormat::kPly, MeshFormat::kOff);
+    const MeshFormat format = GENERATE(MeshFormat::kObj, MeshFormat::kPly, MeshFormat::kOff, MeshFormat::kAmf);
     const TriangleMesh mesh = random_mesh(seed);
     const MeshToWrite input{mesh, {}, "part", CoordinatePrecision::kDouble};
     const MeshFile file = read_mesh(write_mesh(input, format), format, "memory");
@@ -91,7 +91,7 @@ TEST_CASE("mesh files: formats with double precision keep every bit", "[formats]
 
 TEST_CASE("mesh files: colours of triangles survive where the format has them", "[formats][property]") {
     const auto seed = GENERATE(range<std::uint64_t>(1, 4));
-    const MeshFormat format = GENERATE(MeshFormat::kPly, MeshFormat::kOff, MeshFormat::kThreemf);
+    const MeshFormat format = GENERATE(MeshFormat::kPly, MeshFormat::kOff, MeshFormat::kThreemf, MeshFormat::kAmf);
     const TriangleMesh mesh = random_mesh(seed);
     const std::vector<Rgb8> colors = random_colors(seed, mesh.triangles.size());
     const MeshFile file = read_mesh(write_mesh({mesh, colors}, format), format, "memory");

@@ -32,11 +32,11 @@ std::string output_of(const std::string& program, const std::string& arguments) 
     return text;
 }
 
-/// The number behind the last occurrence of `label` and any of " :=".
+/// The number behind the last occurrence of `label` and any of " :=(".
 double number_after(const std::string& text, const std::string& label) {
     const std::size_t at = text.rfind(label);
     if (at == text.npos) return -1.0;
-    const std::size_t begin = text.find_first_not_of(" :=", at + label.size());
+    const std::size_t begin = text.find_first_not_of(" :=(", at + label.size());
     return begin == text.npos ? -1.0 : std::atof(text.c_str() + begin);
 }
 
@@ -71,10 +71,10 @@ TEST_CASE("admesh reads our STL as we wrote it", "[formats][programs]") {
     }
 }
 
-TEST_CASE("PrusaSlicer finds our STL and 3MF closed and of the right volume", "[formats][programs]") {
+TEST_CASE("PrusaSlicer finds our STL, 3MF and AMF closed and of the right volume", "[formats][programs]") {
     for (const NamedMesh& model : models()) {
         const std::vector<Rgb8> colors(model.mesh.triangles.size(), Rgb8{200, 50, 50});
-        for (const std::string extension : {".stl", ".3mf"}) {
+        for (const std::string extension : {".stl", ".3mf", ".amf"}) {
             CAPTURE(model.name, extension);
             const fs::path path = scratch(model.name + extension);
             write_mesh(path, {model.mesh, colors, model.name});
@@ -107,6 +107,27 @@ TEST_CASE("PrusaSlicer loads a carved package with voxel data", "[formats][progr
     if (said.empty()) return;
     CHECK_THAT(said, Catch::Contains("manifold = yes"));
     CHECK(number_after(said, "number_of_facets") == static_cast<double>(mesh.triangles.size()));
+}
+
+TEST_CASE("assimp counts the triangles we wrote and finds the same box", "[formats][programs]") {
+    for (const NamedMesh& model : models()) {
+        const std::vector<Rgb8> colors(model.mesh.triangles.size(), Rgb8{200, 50, 50});
+        for (const std::string extension : {".stl", ".obj", ".ply", ".off", ".glb"}) {
+            CAPTURE(model.name, extension);
+            const fs::path path = scratch(model.name + extension);
+            write_mesh(path, {model.mesh, colors, model.name});
+            const std::string said = output_of("assimp", "info " + path.string());
+            fs::remove(path);
+            fs::remove(obj_materials_path(path));
+            if (said.empty()) return;
+            CHECK(number_after(said, "Faces") == static_cast<double>(model.mesh.triangles.size()));
+            // A glTF stands in metres with y up.
+            const double unit = extension == ".glb" ? 1000.0 : 1.0;
+            double highest = model.mesh.positions_mm.front()[0];
+            for (const Vec3& p : model.mesh.positions_mm) highest = std::max(highest, p[0]);
+            CHECK(unit * number_after(said, "Maximum point") == Approx(highest).margin(1e-6 * unit));
+        }
+    }
 }
 
 TEST_CASE("our reader takes what PrusaSlicer writes", "[formats][programs]") {

@@ -53,6 +53,17 @@ int main(int count, char** arguments) {
           "endsolid a\n");
     write(root / "obj", "plain.obj", write_mesh({mesh, {}, "seed"}, MeshFormat::kObj));
     write(root / "obj", "polygon.obj", "v 0 0 0 1 0 0\nv 2 3 0\nv 0 1 0\nv -2 3 0\ng x\nf 1/1 2//2 3/1/1 \\\n-1\n");
+    write(root / "mtl", "plain.mtl", "newmtl a b\nKd 0.1 0.2 0.3\nmap_Kd x.png\nnewmtl c\nKd .5 # grey\n");
+    write(root / "amf", "plain.amf", write_mesh({mesh, colors, "seed"}, MeshFormat::kAmf));
+    write(root / "amf", "placed.amf",
+          "<amf unit=\"inch\"><material id=\"1\"><color><r>1</r><g>.5</g><b>0</b></color></material><object id=\"2\">"
+          "<mesh><vertices><vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates>"
+          "<x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates><x>0</x><y>1</y><z>0</z></coordinates>"
+          "</vertex></vertices><volume materialid=\"1\"><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume>"
+          "</mesh></object><constellation id=\"3\"><instance objectid=\"2\"><deltax>5</deltax><rz>90</rz></instance>"
+          "</constellation></amf>");
+    write(root / "parameter_set", "sets.json",
+          "{\"parameterSets\": {\"a\": {\"synthesis.seed\": \"5\"}}, \"fileFormatVersion\": \"1\"}");
     write(root / "ply", "binary.ply", write_mesh({mesh, colors}, MeshFormat::kPly));
     write(
         root / "ply", "ascii.ply",

@@ -133,6 +133,7 @@ SettingTable table_of(const char* array, const char* shape) {
             else
                 table.entries.push_back({key.key, numbers, ""});
         }
+        for (const RegionKeyInfo& key : info.texts) table.entries.push_back({key.key, std::string("Face1, a lid"), ""});
         return table;
     }
     return {};
