@@ -16,6 +16,12 @@ struct DeflatedPart {
     std::uint32_t crc32 = 0;  ///< of the unpacked bytes
 };
 
+/// A part as it lies in an archive.
+struct PackedPart {
+    DeflatedPart data;    ///< with the bytes as they are when `stored`
+    bool stored = false;  ///< not packed at all
+};
+
 /// Joins `piece(0)`, ..., `piece(count - 1)` in order. Pieces are made and packed on several threads,
 /// and only their packed form is kept, so the whole text is never in memory. The bytes depend on the
 /// pieces alone.

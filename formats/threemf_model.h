@@ -32,6 +32,7 @@ struct Instance {
 
 struct Object {
     std::string name;
+    std::string part_number;
     std::string type = "model";
     TriangleMesh mesh;                  ///< in the unit of the model
     std::vector<Rgb8> triangle_colors;  ///< one per triangle, or empty

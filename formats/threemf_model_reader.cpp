@@ -47,7 +47,8 @@ enum class Within {
 
 class ModelReader::Handler : public XmlHandler {
   public:
-    Handler(std::string_view source, const RunControl& run) : xml_(*this, source), run_(run) {}
+    Handler(std::string_view source, bool ignore_required, const RunControl& run)
+        : xml_(*this, source), ignore_required_(ignore_required), run_(run) {}
 
     XmlReader& xml() { return xml_; }
 
@@ -174,15 +175,16 @@ class ModelReader::Handler : public XmlHandler {
         return Within::kModel;
     }
 
-    void check_required(std::string_view prefixes) const {
+    void check_required(std::string_view prefixes) {
         static constexpr std::array<std::string_view, 6> kKnown = {kCore,       kMaterial,     kVolumetric,
                                                                    kProduction, kTriangleSets, kFretwork};
         TextScanner words(prefixes, "", {.comment = 0});
         for (std::string_view prefix = words.word(); !prefix.empty(); prefix = words.word()) {
             const std::string space = xml_.namespace_of(prefix);
-            if (std::ranges::find(kKnown, space) == kKnown.end())
-                xml_.fail("the required extension " + in_quotes(prefix) + " (" + in_quotes(space) + ")",
-                          "core, materials, production, triangle sets or volumetric");
+            if (std::ranges::find(kKnown, space) != kKnown.end()) continue;
+            const std::string found = "the required extension " + in_quotes(prefix) + " (" + in_quotes(space) + ")";
+            if (!ignore_required_) xml_.fail(found, "core, materials, production, triangle sets or volumetric");
+            model_.warnings.push_back(found + " is not understood");
         }
     }
 
@@ -217,6 +219,7 @@ class ModelReader::Handler : public XmlHandler {
         object_->line = xml_.line();
         object_->name = e.find("name").value_or("");
         object_->type = e.find("type").value_or("model");
+        object_->part_number = e.find("partnumber").value_or("");
         const auto pid = e.find("pid");
         default_color_ = std::nullopt;
         if (pid) {
@@ -317,6 +320,8 @@ class ModelReader::Handler : public XmlHandler {
         instance.part = e.find("path", kProduction).value_or("");
         instance.line = xml_.line();
         if (const auto transform = e.find("transform")) instance.transform = values_.transform(*transform);
+        const std::string_view printable = e.find("printable").value_or("1");
+        instance.printable = printable != "0" && printable != "false";
         to.push_back(std::move(instance));
         return Within::kLeaf;
     }
@@ -369,6 +374,7 @@ class ModelReader::Handler : public XmlHandler {
 
     XmlReader xml_;
     ThreemfValues values_{xml_};
+    bool ignore_required_;
     const RunControl& run_;
     Model model_;
     std::vector<Within> within_;
@@ -387,8 +393,8 @@ class ModelReader::Handler : public XmlHandler {
     std::size_t degenerate_triangles_ = 0;
 };
 
-ModelReader::ModelReader(std::string_view source, const RunControl& run)
-    : handler_(std::make_unique<Handler>(source, run)) {}
+ModelReader::ModelReader(std::string_view source, bool ignore_required, const RunControl& run)
+    : handler_(std::make_unique<Handler>(source, ignore_required, run)) {}
 ModelReader::~ModelReader() = default;
 
 void ModelReader::feed(std::string_view block) {
@@ -401,7 +407,7 @@ Model ModelReader::finish() {
 }
 
 Model read_model(std::string_view xml, std::string_view source, const RunControl& run) {
-    ModelReader reader(source, run);
+    ModelReader reader(source, /*ignore_required=*/false, run);
     reader.feed(xml);
     return reader.finish();
 }

@@ -14,7 +14,8 @@ namespace fretwork::threemf {
 /// it.
 class ModelReader {
   public:
-    ModelReader(std::string_view source, const RunControl& run);
+    /// \param ignore_required  an unknown required extension is a warning
+    ModelReader(std::string_view source, bool ignore_required, const RunControl& run);
     ~ModelReader();
 
     /// \throws InvalidInput  naming the line: XML that is not well-formed; an unknown required

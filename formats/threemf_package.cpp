@@ -56,8 +56,8 @@ void Package::find_model_part() {
     if (!zip_.contains(kContentTypesPart)) warnings_.emplace_back("the package has no [Content_Types].xml");
 }
 
-Model Package::read_model(std::string_view part, const RunControl& run) const {
-    ModelReader reader(source_ + ": " + std::string(without_slash(part)), run);
+Model Package::read_model(std::string_view part, bool ignore_required, const RunControl& run) const {
+    ModelReader reader(source_ + ": " + std::string(without_slash(part)), ignore_required, run);
     zip_.read_blocks(without_slash(part), [&](std::string_view block) {
         run.throw_if_stopped();
         reader.feed(block);

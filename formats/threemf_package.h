@@ -19,8 +19,9 @@ class Package {
     /// Name of the start part, without a leading slash.
     [[nodiscard]] const std::string& model_part() const { return model_part_; }
 
+    /// \param ignore_required  see ModelReader
     /// \throws InvalidInput  see ModelReader; no such part.
-    [[nodiscard]] Model read_model(std::string_view part, const RunControl& run) const;
+    [[nodiscard]] Model read_model(std::string_view part, bool ignore_required, const RunControl& run) const;
 
     /// A part in memory, by its path with or without a leading slash.
     [[nodiscard]] std::string read_part(std::string_view path, std::uint64_t max_bytes) const;

@@ -1,10 +1,13 @@
 // 3MF -> mesh.
 #pragma once
 
+#include <map>
 #include <string_view>
 
 #include "core/base/run_control.h"
 #include "formats/mesh_data.h"
+#include "formats/mesh_writer_input.h"
+#include "formats/threemf_build.h"
 
 namespace fretwork {
 
@@ -13,10 +16,15 @@ namespace fretwork {
 /// skipped with a warning. Objects may be defined in any order and in several model parts. A mirroring
 /// transform turns its triangles round. Support structures are left out with a warning.
 ///
-/// Guards: those of ZipReader, XmlReader and ModelReader; at most 32 levels of components, no cycles,
-/// at most 16384 placed meshes; and placing may not make more than 4 M triangles or twice those stored.
+/// Guards: those of ZipReader, XmlReader, ModelReader and Build.
 /// \throws InvalidInput  naming part and line; also for an empty build or an item without triangles.
 /// \throws Cancelled
-MeshFile read_threemf(std::string_view bytes, std::string_view source, const RunControl& run = {});
+MeshFile read_threemf(std::string_view bytes, std::string_view source, const RunControl& run = {},
+                      const ThreemfReadOptions& options = {});
+
+/// The same with other meshes, in millimetres, in the place of those of some objects.
+MeshFile read_threemf_with(std::string_view bytes, std::string_view source,
+                           const std::map<threemf::ObjectKey, MeshToWrite>& replaced, const RunControl& run = {},
+                           const ThreemfReadOptions& options = {});
 
 }  // namespace fretwork

@@ -147,7 +147,7 @@ class VolumetricLoader {
           max_samples_(max_samples),
           run_(run),
           package_(bytes, source),
-          model_(package_.read_model(package_.model_part(), run)) {}
+          model_(package_.read_model(package_.model_part(), /*ignore_required=*/false, run)) {}
 
     std::vector<VolumetricObject> load() {
         std::vector<VolumetricObject> objects;

@@ -140,6 +140,27 @@ struct ZipReader::Impl {
             take({block.data(), static_cast<std::size_t>(got)});
         }
     }
+
+    [[nodiscard]] PackedPart read_packed(std::size_t position) const {
+        const Entry& entry = entries[position];
+        zip_stat_t stat;
+        zip_stat_init(&stat);
+        const std::unique_ptr<zip_file_t, CloseZipFile> file(
+            zip_fopen_index(zip.get(), index[position], ZIP_FL_COMPRESSED));
+        if (!file || zip_stat_index(zip.get(), index[position], 0, &stat) != 0)
+            fail(entry.name, "data that cannot be opened", "a sound entry");
+        PackedPart part;
+        part.stored = stat.comp_method == ZIP_CM_STORE;
+        part.data.size = stat.size;
+        part.data.crc32 = stat.crc;
+        part.data.bytes.resize(stat.comp_size);
+        for (std::size_t done = 0; done < part.data.bytes.size();) {
+            const zip_int64_t got = zip_fread(file.get(), part.data.bytes.data() + done, stat.comp_size - done);
+            if (got <= 0) fail(entry.name, std::to_string(done) + " packed bytes", std::to_string(stat.comp_size));
+            done += static_cast<std::size_t>(got);
+        }
+        return part;
+    }
 };
 
 ZipReader::ZipReader(std::string_view bytes, std::string_view source, const ZipLimits& limits)
@@ -168,6 +189,10 @@ std::string ZipReader::read(std::string_view name, std::uint64_t max_bytes) cons
     std::string bytes;
     impl_->read_entry(position, [&](std::string_view block) { bytes.append(block); });
     return bytes;
+}
+
+PackedPart ZipReader::read_packed(std::string_view name) const {
+    return impl_->read_packed(impl_->find(name));
 }
 
 void ZipReader::read_blocks(std::string_view name, const std::function<void(std::string_view)>& take) const {

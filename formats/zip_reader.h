@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/deflated_part.h"
+
 namespace fretwork {
 
 struct ZipLimits {
@@ -42,6 +44,9 @@ class ZipReader {
 
     /// The whole part. \throws InvalidInput  no such part, broken data, wrong checksum or size, over `max_bytes`.
     [[nodiscard]] std::string read(std::string_view name, std::uint64_t max_bytes) const;
+
+    /// The part as it lies in the archive; neither unpacked nor checked. \throws InvalidInput  no such part, cut off.
+    [[nodiscard]] PackedPart read_packed(std::string_view name) const;
 
     /// Hands the part to `take` block by block, checked as it goes; the checksum is known to be right
     /// when the call returns.

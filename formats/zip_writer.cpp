@@ -121,6 +121,13 @@ void ZipWriter::add_deflated(std::string_view name, DeflatedPart part) {
     impl_->add(name, zip_source_function(impl_->zip, &PackedSource::call, &kept), ZIP_CM_DEFAULT);
 }
 
+void ZipWriter::add_packed(std::string_view name, PackedPart part) {
+    if (part.stored)
+        add_stored(name, std::move(part.data.bytes));
+    else
+        add_deflated(name, std::move(part.data));
+}
+
 std::string ZipWriter::finish() {
     if (zip_close(impl_->zip) != 0) impl_->fail("closing");
     impl_->zip = nullptr;

@@ -25,6 +25,9 @@ class ZipWriter {
 
     void add_deflated(std::string_view name, DeflatedPart part);
 
+    /// A part of another archive, not unpacked on the way.
+    void add_packed(std::string_view name, PackedPart part);
+
     /// The archive. Call once, last. \throws SolverFailure  the archive cannot be put together.
     [[nodiscard]] std::string finish();
 

@@ -101,8 +101,8 @@ TEST_CASE("3mf: support objects are left out, unknown elements skipped", "[forma
     CHECK(file.warnings.size() == 1);
 }
 
-std::string nested_components(int levels) {
-    std::string xml = make_tetrahedron(1);
+std::string nested_components(int levels, const std::string& leaf = make_tetrahedron(1)) {
+    std::string xml = leaf;
     for (int i = 2; i <= levels; ++i) {
         const std::string below = "<component objectid=\"" + std::to_string(i - 1) + "\"/>";
         xml += "<object id=\"" + std::to_string(i) + "\"><components>" + below + below + "</components></object>\n";
@@ -190,6 +190,10 @@ std::vector<Hostile> hostile_packages() {
         {"self", model("<object id=\"1\"><components><component objectid=\"1\"/></components></object>"),
          "within itself"},
         {"doubling tree", make_package(make_model(nested_components(31), "<item objectid=\"31\"/>")), "placed meshes"},
+        {"doubling tree of nothing",
+         make_package(make_model(nested_components(31, "<object id=\"1\"><components/></object>"),
+                                 "<item objectid=\"31\"/>")),
+         "placed objects"},
         {"deep", make_package(make_model(nested_components(40), "<item objectid=\"40\"/>")), "32 levels"},
         {"deep behind shallow",
          make_package(make_model(long_chain(20000),
