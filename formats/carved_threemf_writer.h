@@ -1,48 +1,34 @@
 // Carved meshes with colour, voxel data, spec and report -> 3MF.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/base/run_control.h"
 #include "core/exemplar/image.h"
 #include "core/mesh/triangle_mesh.h"
-#include "core/shell/surface_voxels.h"
-#include "formats/length_unit.h"
+#include "formats/package_record.h"
+#include "formats/slicer_paint.h"
+#include "formats/voxel_sheets.h"
 
 namespace fretwork {
 
-/// What is known of one object's shell; everything refers to the entries of `shell`. References must
-/// outlive the call.
-struct VoxelData {
-    const SurfaceVoxels& shell;
-    std::span<const SolidState> solid;
-    std::span<const std::uint8_t> reinforced = {};  ///< 1 where the structural steps forced solid; may be empty
-    std::span<const Rgb8> colors = {};              ///< sRGB; may be empty
-};
-
+/// References must outlive the call.
 struct CarvedObject {
     const TriangleMesh& mesh;
     std::span<const Rgb8> triangle_colors = {};  ///< sRGB, one per triangle; may be empty
     std::string name = {};
-    const VoxelData* voxels = nullptr;  ///< none: no volumetric data for this object
+    const VoxelData* voxels = nullptr;    ///< none: no volumetric data for this object
+    const VoxelSheets* sheets = nullptr;  ///< the same, drawn before; instead of `voxels`
+    TrianglePaint paint = {};
 };
 
-struct CarvedPackage {
+struct CarvedPackage : PackageRecord {
     std::vector<CarvedObject> objects;
     std::string title;
     std::string application = "Fretwork";
-    /// Further metadata. A name without a prefix must be one of the core specification ("Designer",
-    /// "LicenseTerms" ...); ours start with "fw:".
-    std::vector<std::pair<std::string, std::string>> metadata;
-    std::string spec_toml;      ///< resolved; empty: no such part
-    std::string report_json;    ///< empty: no such part
-    std::string thumbnail_png;  ///< empty: none
 };
 
 /// One package as DESIGN section 7 and the volumetric extension (0.8) ask for:
@@ -53,7 +39,9 @@ struct CarvedPackage {
 ///    alpha = solid), nearest and clamped, and where given a second one of 8 bits for `fw:reinforced`;
 ///    linked by `v:volumeid`. Row 0 of a sheet is the highest y. A cell that holds several sheets of the surface
 ///    is solid (reinforced) when one of them is, and shows the colour of its first solid one;
-///  - `/Metadata/fretwork.toml` and `/Metadata/fretwork.json`, and the same texts as metadata.
+///  - where painted, an extruder on every triangle as the named slicer stores it;
+///  - `/Metadata/fretwork.toml` and `/Metadata/fretwork.json`, and the same texts as metadata; the further parts of
+///    the record.
 /// Coordinates are rounded to floats and printed so that they read back exactly.
 ///
 /// The bytes depend on the arguments alone.

@@ -1,8 +1,10 @@
-// Colour channels as mesh files write them -> 8-bit sRGB.
+// Colour channels as mesh files write them -> 8-bit sRGB, and back.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/exemplar/image.h"
@@ -17,6 +19,17 @@ inline constexpr Rgb8 kUncolored = {204, 204, 204};
 [[nodiscard]] inline std::uint8_t color_from_unit(double value) {
     if (!(value > 0.0)) return 0;
     return value >= 1.0 ? std::uint8_t{255} : static_cast<std::uint8_t>(std::lround(255.0 * value));
+}
+
+/// "#RRGGBB"
+[[nodiscard]] inline std::string hex_color(const Rgb8& color) {
+    constexpr std::string_view digits = "0123456789ABCDEF";
+    std::string text = "#";
+    for (const std::uint8_t channel : color) {
+        text += digits[channel >> 4];
+        text += digits[channel & 15];
+    }
+    return text;
 }
 
 /// A triangle shows the mean of its corners' colours.

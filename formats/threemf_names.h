@@ -12,12 +12,20 @@ inline constexpr std::string_view kProduction = "http://schemas.microsoft.com/3d
 inline constexpr std::string_view kTriangleSets = "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07";
 inline constexpr std::string_view kFretwork = "http://fretwork.dev/3mf/2026/11";
 
+inline constexpr std::string_view kSlic3r = "http://schemas.slic3r.org/3mf/2017/06";
+/// Metadata without which PrusaSlicer does not read what is painted; both "1".
+inline constexpr std::string_view kSlic3rVersions[] = {"slic3rpe:Version3mf", "slic3rpe:MmPaintingVersion"};
+
 inline constexpr std::string_view kModelRelation = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 inline constexpr std::string_view kTextureRelation = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture";
 inline constexpr std::string_view kThumbnailRelation =
     "http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail";
 inline constexpr std::string_view kSpecRelation = "http://fretwork.dev/3mf/2026/11/spec";
 inline constexpr std::string_view kReportRelation = "http://fretwork.dev/3mf/2026/11/report";
+inline constexpr std::string_view kRunRelation = "http://fretwork.dev/3mf/2026/11/run";
+inline constexpr std::string_view kRequestRelation = "http://fretwork.dev/3mf/2026/11/request";
+inline constexpr std::string_view kSourceRelation = "http://fretwork.dev/3mf/2026/11/source";
+inline constexpr std::string_view kPictureRelation = "http://fretwork.dev/3mf/2026/11/picture";
 
 inline constexpr std::string_view kContentTypesPart = "[Content_Types].xml";
 inline constexpr std::string_view kRootRelationsPart = "_rels/.rels";

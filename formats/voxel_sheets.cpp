@@ -102,6 +102,8 @@ VoxelSheets make_voxel_sheets(const VoxelData& data, const RunControl& run) {
     check_data(data);
     const SheetMaker maker(data);
     VoxelSheets sheets;
+    sheets.grid = data.shell.grid;
+    sheets.colored = !data.colors.empty();
     sheets.field.resize(static_cast<std::size_t>(data.shell.grid.extent[2]));
     if (!data.reinforced.empty()) sheets.reinforced.resize(sheets.field.size());
     parallel_for(sheets.field.size(), 1, [&](std::size_t z) {

@@ -177,7 +177,7 @@ std::string xml_as_utf8(std::string text) {
 }
 
 std::string edited(std::string_view text, std::vector<TextEdit> edits) {
-    std::ranges::stable_sort(edits, {}, [](const TextEdit& edit) { return edit.span.begin; });
+    std::ranges::stable_sort(edits, {}, [](const TextEdit& e) { return std::pair(e.span.begin, e.span.end); });
     std::string out;
     std::size_t done = 0;
     for (const TextEdit& edit : edits) {

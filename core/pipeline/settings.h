@@ -36,6 +36,13 @@ enum class OutputColor {
     kNone,
 };
 
+/// For which slicer triangles are painted with extruders.
+enum class PaintFormat {
+    kNone,
+    kPrusa,  ///< PrusaSlicer's segmentation; read by OrcaSlicer and BambuStudio too
+    kBambu,  ///< what OrcaSlicer and BambuStudio write themselves
+};
+
 /// An orientation of the picture on the surface: a direction it follows, or none.
 struct OrientationChoice {
     Orientation mode = Orientation::kVector;

@@ -55,6 +55,72 @@ std::string make_tetrahedron(int id, const std::string& attributes, const std::s
     return xml + "</triangles></mesh></object>\n";
 }
 
+namespace {
+
+std::string project_model(const ProjectGaps& gaps) {
+    const std::string tetrahedron = make_tetrahedron(0);
+    const std::size_t begin = tetrahedron.find("<vertices>"), end = tetrahedron.find("</mesh>");
+    const std::string mesh = gaps.mesh_content.empty() ? tetrahedron.substr(begin, end - begin) : gaps.mesh_content;
+    return "<?xml version=\"1.0\" encoding=\"utf-8\" ?>\r\n<!-- made <by> hand -->\n"
+           "<model  unit='millimeter' xml:lang=\"en\" requiredextensions=\"p\" recommendedextensions" +
+           std::string(gaps.recommended == "x" ? "='x'" : "=\"" + gaps.recommended + "\"") +
+           " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"\n"
+           "\txmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" xmlns:x=\"urn:x\" "
+           "xmlns:m=\"urn:other\" xmlns:slic3rpe=\"http://schemas.slic3r.org/3mf/2017/06\"" +
+           gaps.model +
+           " >\n <metadata name=\"Title\">A &amp; B &#x3bc;</metadata><metadata name=\"x:note\" preserve=\"1\"> 1 "
+           "<![CDATA[<mesh>]]></metadata>\n <resources >\n  <basematerials id=\"2\"><base name=\"red\" "
+           "displaycolor=\"#FF0000\"/></basematerials>\n  <t:texture2d xmlns:t=\"http://schemas.microsoft.com/"
+           "3dmanufacturing/material/2015/02\" id=\"3\" path=\"/3D/Textures/t.png\" contenttype=\"image/png\"/>\n"
+           "  <x:unknown id=\"61\" ><object id=\"5\"><mesh/></object></x:unknown>\n  <!-- the wall -->" +
+           gaps.before_object + "<object id=\"5\" name='wall' partnumber=\"W-1\" p:UUID=\"u-5\" x:more=\"&quot;\"" +
+           gaps.object + "><metadatagroup><metadata name=\"x:price\">3</metadata></metadatagroup><mesh x:keep='a>b'" +
+           gaps.mesh + ">" + mesh + "</mesh></object>\n  " +
+           make_tetrahedron(6, "name=\"spare\" pid=\"2\" pindex=\"0\"",
+                            "slic3rpe:mmu_segmentation=\"8\" paint_color='4'  paint_supports=\"4\"") +
+           make_tetrahedron(7, "name=\"post\" type=\"support\"") +
+           "<object id=\"8\" name=\"pair\" p:UUID=\"u-8\"><components><component objectid=\"5\" p:UUID=\"u-c\"/>"
+           "<component objectid=\"5\" transform=\"2 0 0 0 2 0 0 0 2 9 0 0\"/></components></object></resources>\n"
+           "<build p:UUID=\"u-b\"><item objectid=\"8\" partnumber=\"P\" x:y=\"z\"/><item objectid=\"6\" "
+           "printable=\"0\"/><item objectid='7' /><item objectid=\"1\" p:path=\"/3D/Objects/other.model\" "
+           "p:UUID=\"u-i\"/></build>\n <x:tail>&lt;</x:tail></model>\n<!-- end -->";
+}
+
+}  // namespace
+
+std::string make_project(const ProjectGaps& gaps) {
+    const std::string texture(threemf::kTextureRelation), thumbnail(threemf::kThumbnailRelation);
+    return make_zip(
+        {{"_rels/.rels",
+          "<?xml version=\"1.0\"?><Relationships "
+          "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+          "<Relationship Id=\"a\" Target=\"/3D/3dmodel.model\" Type=\"" +
+              std::string(threemf::kModelRelation) +
+              "\"/><Relationship Id=\"fretwork0\" Target=\"Metadata/thumbnail.png\" Type=\"" + thumbnail +
+              "\"/><Relationship Id=\"c\" Target=\"/odd/part.bin\" Type=\"urn:odd\"/></Relationships>"},
+         {"3D/3dmodel.model", project_model(gaps)},
+         {"odd/part.bin", std::string("\0\1\2odd\xFF", 7)},
+         {"[Content_Types].xml",
+          "<ct:Types xmlns:ct=\"http://schemas.openxmlformats.org/package/2006/content-types\"><ct:Default "
+          "Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/><ct:Default "
+          "Extension=\"PNG\" ContentType=\"image/png\"/><ct:Override PartName=\"/odd/part.bin\" "
+          "ContentType=\"urn:odd\"/></ct:Types>"},
+         {"3D/_rels/3dmodel.model.rels",
+          "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
+          "Id=\"t\" Target=\"/3D/Textures/t.png\" Type=\"" +
+              texture + "\"/></Relationships>"},
+         {"3D/Textures/t.png", "texture"},
+         {"3D/Objects/other.model",
+          make_model("<m:colorgroup id=\"7\"><m:color color=\"#00FF00\"/></m:colorgroup>" +
+                         make_tetrahedron(1, "name=\"far\" p:UUID=\"u-1\" pid=\"7\" pindex=\"0\""),
+                     "")},
+         {"Metadata/thumbnail.png", "old picture"},
+         {"Metadata/plate_1.png", "plate"},
+         {"Metadata/model_settings.config", "<config><object id=\"8\"><metadata key=\"extruder\"/></object></config>"},
+         {"Metadata/project_settings.config", "{\"layer\": 0.2}"},
+         {"Metadata/Slic3r_PE.config", "; layer_height = 0.2\n"}});
+}
+
 std::string patched(std::string bytes, std::string_view from, std::string_view to) {
     if (from.size() != to.size()) throw std::logic_error("patched: lengths differ");
     std::size_t count = 0;

@@ -26,6 +26,22 @@ std::string make_model(const std::string& resources, const std::string& build, c
 /// `<object>` with a tetrahedron of volume 1/6 at the origin.
 std::string make_tetrahedron(int id, const std::string& attributes = "", const std::string& triangle_attributes = "");
 
+/// What carving may write into the root model of `make_project`: nothing by default.
+struct ProjectGaps {
+    std::string model;              ///< attributes at the end of <model>
+    std::string recommended = "x";  ///< value of recommendedextensions
+    std::string before_object;      ///< text before <object id="5">
+    std::string object;             ///< attributes of that object
+    std::string mesh;               ///< attributes of its mesh
+    std::string mesh_content;       ///< empty: a tetrahedron
+};
+
+/// A project with a bit of everything: metadata with a group, materials and a texture, unknown elements, attributes
+/// and parts, paint, slicer settings, assemblies, a second model part, comments, odd blanks and quotes. Objects with
+/// meshes: "wall" (5, W-1, twice through the assembly "pair"), "spare" (6, not printable), "post" (7, a support),
+/// and "far" (1 of /3D/Objects/other.model). Its prefix m means something else, and its ids end at 61.
+std::string make_project(const ProjectGaps& gaps = {});
+
 /// Replaces every occurrence; both have the same length. For names within finished archives.
 std::string patched(std::string bytes, std::string_view from, std::string_view to);
 
