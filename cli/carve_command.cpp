@@ -1,19 +1,18 @@
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
 #include <memory>
+#include <optional>
 
+#include "cli/carve_again.h"
+#include "cli/carved_output.h"
 #include "cli/command.h"
 #include "cli/files.h"
 #include "cli/make_rule.h"
 #include "cli/pattern_options.h"
-#include "cli/result_files.h"
 #include "cli/run_options.h"
 #include "core/base/error.h"
-#include "core/pipeline/carve.h"
-#include "core/render/render.h"
-#include "formats/png_writer.h"
-#include "formats/report_json.h"
+#include "formats/threemf_editor.h"
 
 namespace fretwork::cli {
 namespace {
@@ -22,80 +21,94 @@ struct CarveOptions {
     ModelSource model;
     std::string output, export_format;
     PatternOptions pattern;
+    std::vector<std::string> objects;
+    std::string paint;
+    std::optional<int> extruders;
+    bool no_thumbnail = false, no_source = false, ignore_required = false;
+    bool again = false;
+    std::string source;
     RunOptions run;
     std::string summary, preview, dependencies;
     bool check = false;
     bool strict = false;
 };
 
-/// Curved faces follow their surface to a tenth of a voxel.
-CadMeshing meshing_for(const Settings& settings) {
-    constexpr double kVoxelShare = 0.1;
-    CadMeshing meshing;
-    if (settings.shell.voxel_mm && !settings.input.size_mm)
-        meshing.deviation_mm = kVoxelShare * *settings.shell.voxel_mm;
-    else if (settings.shell.resolution)
-        // The diagonal is at most sqrt(3) of the longest side.
-        meshing.deviation_share = kVoxelShare / (1.74 * *settings.shell.resolution);
-    return meshing;
+/// The flags of this command that stand for keys of a spec.
+PatternOptions with_own_flags(const CarveOptions& options) {
+    PatternOptions pattern = options.pattern;
+    const auto set = [&](const std::string& key, const std::string& value) {
+        pattern.assignments.push_back(key + "=" + value);
+    };
+    if (!options.objects.empty()) set("input.objects", fmt::format("{}", fmt::join(options.objects, ",")));
+    if (options.ignore_required) set("input.ignore_required", "true");
+    if (options.no_thumbnail) set("output.thumbnail", "false");
+    if (options.no_source) set("output.source", "false");
+    if (!options.paint.empty()) set("output.paint", options.paint);
+    if (options.extruders) set("output.extruders", std::to_string(*options.extruders));
+    return pattern;
 }
 
-/// Faces and parts that regions may name.
-std::vector<NamedTriangles> named_triangles_of(const MeshFile& file) {
-    std::vector<NamedTriangles> named;
-    for (const auto* list : {&file.faces, &file.parts})
-        for (const MeshPart& part : *list)
-            if (!part.name.empty()) named.push_back({part.name, part.first_triangle, part.triangle_count});
-    return named;
+CarveRequest request_of(const CarveOptions& options) {
+    const PatternOptions pattern = with_own_flags(options);
+    if (options.again) return request_of_package(read_bytes(options.model), options.source, pattern);
+    if (!options.source.empty()) throw InvalidSetting("--source goes with --again");
+    CarveRequest request;
+    request.settings = settings_of(pattern);
+    // Before the model is read: it is quick, and most mistakes are there.
+    if (request.settings.objects.empty()) exemplar_of(request.settings, request.pictures);
+    request.model = read_bytes(options.model);
+    return request;
 }
 
-CarveInput input_of(const CarveOptions& options, const Settings& settings, std::vector<std::string>& read,
-                    const RunControl& run) {
-    // The exemplar first: it is quick, and most mistakes are there.
-    ChosenExemplar chosen = exemplar_of(settings);
-    ModelSource source = options.model;
-    source.cad = meshing_for(settings);
-    MeshFile file = read_model(source, run);
-    if (source.path != kStream) read.push_back(source.path);
-    for (const std::filesystem::path& beside : file.read_beside) read.push_back(beside.string());
-    if (!options.run.quiet)
-        for (const std::string& warning : file.warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
-    CarveInput input;
-    input.named_triangles = named_triangles_of(file);
-    input.mesh = std::move(file.mesh);
-    input.model_name = options.model.path == kStream ? "standard input" : options.model.path;
-    input.exemplar = std::move(chosen.exemplar);
-    input.exemplar_width_mm = chosen.natural_width_mm;
-    input.exemplar_name = chosen.name;
-    return input;
+/// Everything that a run of this command starts from.
+struct Opened {
+    CarveRequest request;
+    CarveModel model;
+};
+
+Opened open(const CarveOptions& options, const RunControl& run) {
+    Opened opened{request_of(options), {}};
+    opened.model = open_model(std::move(opened.request.model), opened.request.settings, run);
+    if (options.run.quiet) return opened;
+    for (const auto* warnings : {&opened.request.warnings, &opened.model.warnings})
+        for (const std::string& warning : *warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
+    return opened;
 }
 
-// What the engine says about the model carries the model's name.
-template <class Work>
-auto naming_model(const CarveInput& input, const Work& work) {
-    try {
-        return work();
-    } catch (const InvalidInput& error) {
-        throw InvalidInput(fmt::format("{}: {}", input.model_name, error.what()));
-    }
+/// What a 3MF cannot keep of the objects that are carved; finds out early whether it can be written at all.
+void check_package(const CarveOptions& options, const CarveModel& model) {
+    if (!model.targets.front().key) return;
+    std::vector<threemf::ObjectKey> keys;
+    for (const CarveTarget& target : model.targets) keys.push_back(*target.key);
+    const ThreemfEditor editor(model.file.bytes, model.file.name, keys);
+    if (options.run.quiet) return;
+    for (const std::string& warning : editor.warnings()) fmt::print(stderr, "fretwork: warning: {}\n", warning);
 }
 
-void print_warnings(const RunReport& report) {
-    for (const std::string& warning : report.warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
+/// In front of what is said about one of several objects.
+std::string prefix_of(const CarveModel& model, std::size_t i) {
+    return model.targets.size() > 1 ? label_of(model.targets[i]) + ": " : "";
 }
 
-void print_checked(const RunReport& report) {
+void print_warnings(const CarveModel& model, const std::vector<RunReport>& reports) {
+    for (std::size_t i = 0; i < reports.size(); ++i)
+        for (const std::string& warning : reports[i].warnings)
+            fmt::print(stderr, "fretwork: warning: {}{}\n", prefix_of(model, i), warning);
+}
+
+void print_checked(const std::string& prefix, const RunReport& report) {
     fmt::print(
         stderr,
-        "fretwork: can be carved: {} voxels of {:.3g} mm along the longest side, wall {:.3g} mm, pattern {:.3g} mm "
+        "fretwork: {}can be carved: {} voxels of {:.3g} mm along the longest side, wall {:.3g} mm, pattern {:.3g} mm "
         "wide, features and holes from {:.3g} mm, about {:.0f} MB of memory\n",
-        report.shell.resolution, report.shell.voxel_mm, report.shell.thickness_mm, report.pattern.exemplar_width_mm,
-        report.mesh.min_feature_mm, static_cast<double>(report.peak_memory_bytes) / 1e6);
+        prefix, report.shell.resolution, report.shell.voxel_mm, report.shell.thickness_mm,
+        report.pattern.exemplar_width_mm, report.mesh.min_feature_mm,
+        static_cast<double>(report.peak_memory_bytes) / 1e6);
 }
 
-void print_done(const std::string& output, const RunReport& report) {
-    fmt::print(stderr, "fretwork: {}: {} triangles, {} {}, {:.0f} % solid, stress {}, {:.1f} s\n",
-               output == kStream ? "standard output" : output, report.mesh.report.triangles,
+void print_done(const std::string& output, const std::string& prefix, const RunReport& report) {
+    fmt::print(stderr, "fretwork: {}: {}{} triangles, {} {}, {:.0f} % solid, stress {}, {:.1f} s\n",
+               output == kStream ? "standard output" : output, prefix, report.mesh.report.triangles,
                report.pattern.components_after, report.pattern.components_after == 1 ? "piece" : "pieces",
                100.0 * report.pattern.solid_fraction, report.structure.verdict, report.seconds_total);
 }
@@ -107,62 +120,65 @@ bool below_standard(const RunReport& report) {
 }
 
 int check(const CarveOptions& options, Interrupt& interrupt) {
-    const Settings settings = settings_of(options.pattern);
     const RunControl run = control_of(options.run, interrupt);
-    std::vector<std::string> read;
-    const CarveInput input = input_of(options, settings, read, run.slice(0.0, 0.2));
-    const RunReport report =
-        naming_model(input, [&] { return check_carve(input, settings, limits_of(options.run), run.slice(0.2, 1.0)); });
+    Opened opened = open(options, run.slice(0.0, 0.2));
+    check_package(options, opened.model);
+    const std::vector<RunReport> reports = check_targets(opened.model, opened.request.settings, opened.request.pictures,
+                                                         limits_of(options.run), run.slice(0.2, 1.0));
     if (!options.run.quiet) {
-        print_warnings(report);
-        print_checked(report);
+        print_warnings(opened.model, reports);
+        for (std::size_t i = 0; i < reports.size(); ++i) print_checked(prefix_of(opened.model, i), reports[i]);
     }
-    if (!options.summary.empty()) put(options.summary, report_json(report), interrupt);
+    if (!options.summary.empty())
+        put(options.summary, summary_json(opened.model, reports, ReportTimes::kInclude), interrupt);
     return kDone;
 }
 
-std::string preview_png(const CarveResult& result, Preset preset, const RunControl& run) {
-    RenderSettings picture;
-    if (preset == Preset::kDraft) {
-        picture.width = picture.height = 640;
-        picture.samples_per_axis = 2;
-    }
-    return write_png(render(result.carved.mesh, result.carved.triangle_colors, picture, run));
-}
-
-int carve_command(const CarveOptions& options, Interrupt& interrupt) {
-    if (options.check) return check(options, interrupt);
-    if (options.output.empty()) throw InvalidSetting("no output: give -o FILE, or --check to carve nothing");
+void put_results(const CarveOptions& options, const CarvedModel& result, const std::vector<RunReport>& reports,
+                 const PictureFiles& pictures, const RunControl& run, Interrupt& interrupt) {
     const MeshFormat format = output_format(options.output, options.export_format);
-    for (const std::string& target : {options.output, options.summary, options.preview, options.dependencies})
-        check_target(target, {options.model.path, options.pattern.exemplar, options.pattern.mask});
-    const Settings settings = settings_of(options.pattern);
-    const RunLimits limits = limits_of(options.run);
-    const RunControl run = control_of(options.run, interrupt);
-
-    std::vector<std::string> read;
-    const CarveInput input = input_of(options, settings, read, run.slice(0.0, 0.02));
-    const CarveResult result =
-        naming_model(input, [&] { return carve(input, settings, limits, run.slice(0.02, 0.95)); });
-
-    const MeshBytes carved = carved_bytes(result, settings, input, options.output, format, run.slice(0.95, 0.98));
-    if (!options.preview.empty())
-        put(options.preview, preview_png(result, settings.synthesis.preset, run.slice(0.98, 0.995)), interrupt);
-    if (!options.summary.empty()) put(options.summary, report_json(result.report), interrupt);
+    const MeshBytes carved = carved_bytes(result, options.output, format, run.slice(0.0, 0.6));
+    if (!options.preview.empty()) put(options.preview, preview_png(result, run.slice(0.6, 0.9)), interrupt);
+    if (!options.summary.empty())
+        put(options.summary, summary_json(result.model, reports, ReportTimes::kInclude), interrupt);
     if (!options.dependencies.empty()) {
-        const std::vector<std::string> more = files_read(options.pattern, settings);
-        read.insert(read.end(), more.begin(), more.end());
-        put(options.dependencies, make_rule(options.output, read), interrupt);
+        std::vector<std::string> inputs = files_read(options.pattern, pictures);
+        inputs.insert(inputs.begin(), result.model.read_beside.begin(), result.model.read_beside.end());
+        if (options.model.path != kStream) inputs.insert(inputs.begin(), options.model.path);
+        put(options.dependencies, make_rule(options.output, inputs), interrupt);
     }
     // The result last: whoever sees it sees everything else too.
     if (!carved.materials_path.empty()) put(carved.materials_path, carved.materials, interrupt);
     put(options.output, carved.bytes, interrupt);
     run.checkpoint("write", 1.0);
+}
+
+int carve_command(const CarveOptions& options, Interrupt& interrupt) {
+    if (options.check) return check(options, interrupt);
+    if (options.output.empty()) throw InvalidSetting("no output: give -o FILE, or --check to carve nothing");
+    output_format(options.output, options.export_format);
+    for (const std::string& target : {options.output, options.summary, options.preview, options.dependencies})
+        check_target(target, {options.model.path, options.pattern.exemplar, options.pattern.mask, options.source});
+    const RunLimits limits = limits_of(options.run);
+    const RunControl run = control_of(options.run, interrupt);
+
+    Opened opened = open(options, run.slice(0.0, 0.02));
+    const Settings& settings = opened.request.settings;
+    check_package(options, opened.model);
+    std::vector<CarvedTarget> carved =
+        carve_targets(opened.model, settings, opened.request.pictures, limits, run.slice(0.02, 0.95));
+
+    const std::vector<RunFile> pictures = opened.request.pictures.files(settings.output.source);
+    std::vector<RunReport> reports;
+    for (const CarvedTarget& target : carved) reports.push_back(target.report);
+    put_results(options, {opened.model, carved, settings, pictures}, reports, opened.request.pictures,
+                run.slice(0.95, 1.0), interrupt);
     if (!options.run.quiet) {
-        print_warnings(result.report);
-        print_done(options.output, result.report);
+        print_warnings(opened.model, reports);
+        for (std::size_t i = 0; i < reports.size(); ++i)
+            print_done(options.output, prefix_of(opened.model, i), reports[i]);
     }
-    return options.strict && below_standard(result.report) ? kBelowStandard : kDone;
+    return options.strict && std::ranges::any_of(reports, below_standard) ? kBelowStandard : kDone;
 }
 
 }  // namespace
@@ -192,6 +208,31 @@ void add_carve(CLI::App& program, Action& chosen) {
         ->type_name("FILE")
         ->group(files);
     command->add_option("--preview", options->preview, "Draw the result into a PNG")->type_name("FILE")->group(files);
+    command
+        ->add_option("--objects", options->objects,
+                     "Objects of a 3MF to carve, by name, number or part number, with commas between them; all that "
+                     "are printed if not given; may be repeated")
+        ->type_name("NAME,...")
+        ->group(files)
+        ->allow_extra_args(false);
+    command
+        ->add_flag("--ignore-required", options->ignore_required,
+                   "Carve a 3MF although it requires an extension that is not known")
+        ->group(files);
+    command
+        ->add_flag("--again", options->again,
+                   "IN is a carved 3MF: carve the model that it keeps, as it was; flags change settings")
+        ->group(files);
+    command->add_option("--source", options->source, "With --again: the model, where IN does not keep it")
+        ->type_name("FILE")
+        ->group(files);
+    command->add_flag("--no-source", options->no_source, "Keep no copy of the model and pictures in a 3MF")
+        ->group(files);
+    command->add_flag("--no-thumbnail", options->no_thumbnail, "Put no picture of the result into a 3MF")->group(files);
+    command->add_option("--paint", options->paint, "Paint the triangles of a 3MF with extruders: prusa, bambu or none")
+        ->type_name("SLICER")
+        ->group(files);
+    command->add_option("--extruders", options->extruders, "Extruders to paint with (4)")->type_name("N")->group(files);
     command->add_option("-d", options->dependencies, "Write a rule for make that names every file read")
         ->type_name("FILE")
         ->group(files);
@@ -203,6 +244,8 @@ void add_carve(CLI::App& program, Action& chosen) {
         "Examples:\n"
         "  fretwork carve vase.stl --pattern cells -o vase.3mf\n"
         "  fretwork carve bunny.off --size-mm 100 --exemplar leaves.png --thickness-mm 2.4 -o bunny.3mf\n"
+        "  fretwork carve project.3mf --objects lid,box --pattern waves -o carved.3mf\n"
+        "  fretwork carve carved.3mf --again --seed 2 -o other.3mf\n"
         "  openscad -o - --export-format off box.scad | fretwork carve - --input-format off --pattern box.toml -o "
         "box.stl");
     command->callback([options, &chosen] {

@@ -19,12 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-LengthUnit unit_named(const std::string& name) {
-    if (const auto unit = length_unit_from_name(name)) return *unit;
-    throw InvalidSetting(
-        fmt::format("--input-unit {}: expected micron, millimeter, centimeter, meter, inch or foot", name));
-}
-
 [[noreturn]] void fail_write(const std::string& path, int code) {
     throw FileError(
         fmt::format("{}: cannot be written: {}", path == kStream ? "standard output" : path, std::strerror(code)));
@@ -81,18 +75,34 @@ std::string read_stdin() {
     }
 }
 
+LengthUnit unit_named(const std::string& name) {
+    if (const auto unit = length_unit_from_name(name)) return *unit;
+    throw InvalidSetting(
+        fmt::format("--input-unit {}: expected micron, millimeter, centimeter, meter, inch or foot", name));
+}
+
+ModelBytes read_bytes(const ModelSource& source) {
+    ModelBytes model;
+    model.unit = unit_named(source.unit);
+    const bool stream = source.path == kStream;
+    if (stream && source.format.empty()) throw InvalidSetting("reading from standard input needs --input-format");
+    model.format = source.format.empty() ? mesh_format_from_path(source.path) : mesh_format_from_name(source.format);
+    model.name = stream ? "standard input" : source.path;
+    model.bytes = stream ? read_stdin() : read_file(fs::path(source.path));
+    if (!stream) model.folder = fs::path(source.path).parent_path();
+    return model;
+}
+
 MeshFile read_model(const ModelSource& source, const RunControl& run) {
-    const LengthUnit unit = unit_named(source.unit);
-    if (source.path != kStream) {
-        MeshReadOptions options;
-        if (!source.format.empty()) options.format = mesh_format_from_name(source.format);
-        options.unit = unit;
-        options.cad = source.cad;
-        return read_mesh(fs::path(source.path), options, run);
-    }
-    if (source.format.empty()) throw InvalidSetting("reading from standard input needs --input-format");
-    const MeshFormat format = mesh_format_from_name(source.format);
-    return read_mesh(read_stdin(), format, "standard input", {.format = format, .unit = unit, .cad = source.cad}, run);
+    return read_model(read_bytes(source), source.cad, run);
+}
+
+MeshFile read_model(const ModelBytes& model, const CadMeshing& cad, const RunControl& run) {
+    MeshReadOptions options;
+    options.unit = model.unit;
+    options.cad = cad;
+    options.folder = model.folder;
+    return read_mesh(model.bytes, model.format, model.name, options, run);
 }
 
 MeshBytes mesh_bytes(const std::string& path, MeshToWrite mesh, MeshFormat format) {

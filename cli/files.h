@@ -1,6 +1,7 @@
 // Models and results: files, standard input and output.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,7 +22,23 @@ struct ModelSource {
     CadMeshing cad = {};              ///< of STEP, IGES and BREP
 };
 
+/// A model as it lies in its file.
+struct ModelBytes {
+    std::string bytes;
+    MeshFormat format = MeshFormat::kStl;
+    std::string name;  ///< the path, or "standard input"
+    LengthUnit unit = LengthUnit::kMillimeter;
+    std::optional<std::filesystem::path> folder = {};  ///< that the file lies in; none for a stream
+};
+
+/// \throws InvalidSetting  a format or unit that is not known; `-` without a format. \throws InvalidInput, FileError
+ModelBytes read_bytes(const ModelSource& source);
+
 MeshFile read_model(const ModelSource& source, const RunControl& run = {});
+MeshFile read_model(const ModelBytes& model, const CadMeshing& cad, const RunControl& run = {});
+
+/// \throws InvalidSetting  not a unit.
+LengthUnit unit_named(const std::string& name);
 
 /// The format of a result from its extension or name. \throws InvalidSetting  `-` without a format.
 MeshFormat output_format(const std::string& path, const std::string& format);

@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/exemplar/exemplar.h"
 #include "core/mesh/mesh_report.h"
+#include "core/pipeline/object_settings.h"
 #include "core/pipeline/region_schema.h"
 #include "core/pipeline/settings_schema.h"
 #include "formats/facts_text.h"
@@ -97,6 +98,7 @@ int spec_info(const InfoOptions& options) {
         facts.add(table.array,
                   static_cast<std::int64_t>(std::ranges::count(tables, table.array, &SettingTable::array)));
     }
+    facts.add(std::string(kObjectArray), static_cast<std::int64_t>(settings.objects.size()));
     return print(facts, options.json);
 }
 

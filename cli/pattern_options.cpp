@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // Paths in a spec are meant from where the spec lies.
-void anchor_paths(const fs::path& spec, SpecDocument& document) {
-    for (SettingAssignment& assignment : document.assignments) {
+void anchor_paths(const fs::path& spec, std::vector<SettingAssignment>& assignments) {
+    for (SettingAssignment& assignment : assignments) {
         if (assignment.key != "exemplar.image" && assignment.key != "exemplar.mask") continue;
         if (auto* text = std::get_if<std::string>(&assignment.value))
             if (!text->empty() && fs::path(*text).is_relative()) *text = (spec.parent_path() / *text).string();
@@ -126,11 +126,14 @@ bool names_spec(const std::string& pattern) {
 }
 
 Settings settings_of(const PatternOptions& options) {
-    SpecDocument document;
-    if (names_spec(options.pattern)) {
-        document = read_spec_toml(fs::path(options.pattern));
-        anchor_paths(options.pattern, document);
-    }
+    if (!names_spec(options.pattern)) return settings_of(options, {});
+    SpecDocument document = read_spec_toml(fs::path(options.pattern));
+    anchor_paths(options.pattern, document.assignments);
+    for (SettingTable& table : document.tables) anchor_paths(options.pattern, table.entries);
+    return settings_of(options, std::move(document));
+}
+
+Settings settings_of(const PatternOptions& options, SpecDocument document) {
     add_source(options, document);
     add_parameter_set(options, document);
     for (const std::string& assignment : options.assignments)
@@ -140,23 +143,28 @@ Settings settings_of(const PatternOptions& options) {
 }
 
 ChosenExemplar exemplar_of(const Settings& settings) {
+    PictureFiles pictures;
+    return exemplar_of(settings, pictures);
+}
+
+ChosenExemplar exemplar_of(const Settings& settings, PictureFiles& pictures) {
     const ExemplarOptions& options = settings.exemplar;
     if (!options.pattern.empty()) return builtin_exemplar(options);
     if (options.image.empty())
         throw InvalidSetting(
             "no pattern: give --pattern NAME (fretwork pattern list), --pattern SPEC.toml or --exemplar IMAGE");
     exemplar_settings(options);  // complains about contradictions before anything is read
-    const Image picture = read_image(fs::path(options.image));
+    const Image picture = read_image(pictures.bytes_of(options.image), options.image);
     if (options.mask.empty()) return picture_exemplar(options, picture, nullptr);
-    const Image mask = read_image(fs::path(options.mask));
+    const Image mask = read_image(pictures.bytes_of(options.mask), options.mask);
     return picture_exemplar(options, picture, &mask);
 }
 
-std::vector<std::string> files_read(const PatternOptions& options, const Settings& settings) {
+std::vector<std::string> files_read(const PatternOptions& options, const PictureFiles& pictures) {
     std::vector<std::string> files;
     if (names_spec(options.pattern)) files.push_back(options.pattern);
-    for (const std::string& file : {options.parameter_file, settings.exemplar.image, settings.exemplar.mask})
-        if (!file.empty()) files.push_back(file);
+    if (!options.parameter_file.empty()) files.push_back(options.parameter_file);
+    for (const RunFile& picture : pictures.files(false)) files.push_back(picture.path);
     return files;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/picture_files.h"
 #include "core/pipeline/choose_exemplar.h"
 #include "core/pipeline/settings.h"
 
@@ -32,14 +33,18 @@ void add_pattern_flags(CLI::App& command, PatternOptions& options);
 /// \throws InvalidSetting, InvalidInput, FileError
 Settings settings_of(const PatternOptions& options);
 
+/// The same on top of those of an earlier run, in the place of a spec.
+Settings settings_of(const PatternOptions& options, SpecDocument document);
+
 /// Whether --pattern names a spec rather than a built-in pattern.
 bool names_spec(const std::string& pattern);
 
 /// Reads or draws the exemplar that the settings name.
 /// \throws InvalidSetting  none is named.
 ChosenExemplar exemplar_of(const Settings& settings);
+ChosenExemplar exemplar_of(const Settings& settings, PictureFiles& pictures);
 
-/// Every file that the settings were made from and that they name.
-std::vector<std::string> files_read(const PatternOptions& options, const Settings& settings);
+/// Every file that the settings were made from, and the pictures.
+std::vector<std::string> files_read(const PatternOptions& options, const PictureFiles& pictures);
 
 }  // namespace fretwork::cli

@@ -79,6 +79,12 @@ MeshFormat mesh_format_from_name(std::string_view name) {
     throw InvalidSetting("mesh format: found " + in_quotes(name) + ", expected one of " + known);
 }
 
+std::string_view mesh_format_name(MeshFormat format) {
+    for (const auto& [word, known] : kFormats)
+        if (known == format) return word;
+    return {};
+}
+
 MeshFormat mesh_format_from_path(const std::filesystem::path& path) {
     try {
         return mesh_format_from_name(path.extension().string());
@@ -114,9 +120,21 @@ MeshFile read_format(std::string_view bytes, MeshFormat format, std::string_view
     throw InvalidSetting(std::string(source) + ": found GLB, which is only written, expected a format to read");
 }
 
-MeshFile read_with(std::string_view bytes, MeshFormat format, std::string_view source, const MeshReadOptions& options,
-                   const ObjMaterialFiles& materials, const RunControl& run) {
+}  // namespace
+
+MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view source, const MeshReadOptions& options,
+                   const RunControl& run) {
+    std::vector<std::filesystem::path> beside;
+    const ObjMaterialFiles materials = [&](std::string_view name) -> std::optional<std::string> {
+        if (!options.folder) return std::nullopt;
+        const std::filesystem::path file = *options.folder / std::filesystem::path(name).filename();
+        std::error_code none;
+        if (!std::filesystem::is_regular_file(file, none)) return std::nullopt;
+        beside.push_back(file);
+        return read_file(file);
+    };
     MeshFile file = read_format(bytes, format, source, options.cad, materials, run);
+    file.read_beside = std::move(beside);
     if (file.mesh.triangles.empty())
         fail_parse(source, place_of_byte(bytes.size()), "no triangle in the whole file", "at least one");
     const bool has_unit = format == MeshFormat::kThreemf || format == MeshFormat::kAmf || format == MeshFormat::kStep ||
@@ -128,26 +146,11 @@ MeshFile read_with(std::string_view bytes, MeshFormat format, std::string_view s
     return file;
 }
 
-}  // namespace
-
-MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view source, const MeshReadOptions& options,
-                   const RunControl& run) {
-    return read_with(bytes, format, source, options, {}, run);
-}
-
 MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options, const RunControl& run) {
-    const MeshFormat format = options.format ? *options.format : mesh_format_from_path(path);
-    std::vector<std::filesystem::path> beside;
-    const ObjMaterialFiles materials = [&](std::string_view name) -> std::optional<std::string> {
-        const std::filesystem::path file = path.parent_path() / std::filesystem::path(name).filename();
-        std::error_code none;
-        if (!std::filesystem::is_regular_file(file, none)) return std::nullopt;
-        beside.push_back(file);
-        return read_file(file);
-    };
-    MeshFile file = read_with(read_file(path), format, path.string(), options, materials, run);
-    file.read_beside = std::move(beside);
-    return file;
+    MeshReadOptions here = options;
+    if (!here.format) here.format = mesh_format_from_path(path);
+    here.folder = path.parent_path();
+    return read_mesh(read_file(path), *here.format, path.string(), here, run);
 }
 
 std::string write_mesh(const MeshToWrite& input, MeshFormat format) {

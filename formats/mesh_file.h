@@ -22,6 +22,9 @@ enum class MeshFormat { kStl, kObj, kPly, kOff, kThreemf, kAmf, kGlb, kStep, kIg
 /// \throws InvalidSetting  naming the known ones.
 MeshFormat mesh_format_from_name(std::string_view name);
 
+/// "stl", "3mf", "step" ...
+std::string_view mesh_format_name(MeshFormat format);
+
 /// \throws InvalidSetting  no or an unknown extension.
 MeshFormat mesh_format_from_path(const std::filesystem::path& path);
 
@@ -29,6 +32,8 @@ struct MeshReadOptions {
     std::optional<MeshFormat> format = {};      ///< empty: from the extension
     LengthUnit unit = LengthUnit::kMillimeter;  ///< of formats that name none (STL, OBJ, PLY, OFF, BREP)
     CadMeshing cad = {};                        ///< how finely STEP, IGES and BREP are broken into triangles
+    /// Where the materials of an OBJ lie; empty: they are not read. Reading by path sets it.
+    std::optional<std::filesystem::path> folder = {};
 };
 
 /// Limits: files up to 4 GiB, coordinates up to 1e9 in size.
@@ -37,7 +42,7 @@ struct MeshReadOptions {
 /// \throws FileError       cannot be opened.
 MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {}, const RunControl& run = {});
 
-/// The same from memory; `options.format` is not looked at, and an OBJ goes without its materials.
+/// The same from memory; `options.format` is not looked at.
 /// \param source  name for messages, such as "standard input"
 MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view source,
                    const MeshReadOptions& options = {}, const RunControl& run = {});

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "formats/color_channel.h"
+
 namespace fretwork {
 namespace {
 
@@ -115,9 +117,13 @@ Json seconds_json(const RunReport& r) {
     return json;
 }
 
-}  // namespace
+Json paint_json(const PaintRecord& paint) {
+    Json colors = Json::array();
+    for (const Rgb8& color : paint.extruders) colors.push_back(hex_color(color));
+    return {{"slicer", paint.format == PaintFormat::kPrusa ? "prusa" : "bambu"}, {"extruders", colors}};
+}
 
-std::string report_json(const RunReport& r, ReportTimes times) {
+Json whole_json(const RunReport& r, ReportTimes times) {
     Json json;
     json["version"] = r.version;
     json["input"] = {{"model", r.input.model},
@@ -142,8 +148,32 @@ std::string report_json(const RunReport& r, ReportTimes times) {
         json["seconds"] = seconds_json(r);
         json["peak_memory_bytes"] = r.peak_memory_bytes;
     }
+    if (r.paint.format != PaintFormat::kNone) json["paint"] = paint_json(r.paint);
     json["warnings"] = r.warnings;
+    return json;
+}
+
+std::string text_of(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string report_json(const RunReport& report, ReportTimes times) {
+    return text_of(whole_json(report, times));
+}
+
+std::string report_json(std::span<const ObjectReport> objects, ReportTimes times) {
+    Json json = whole_json(objects.front().report, times);
+    json["objects"] = Json::array();
+    for (const ObjectReport& object : objects)
+        json["objects"].push_back({{"name", object.name},
+                                   {"part_number", object.part_number},
+                                   {"part", object.part},
+                                   {"id", object.id},
+                                   {"instances", object.instances},
+                                   {"report", whole_json(object.report, times)}});
+    return text_of(json);
 }
 
 }  // namespace fretwork

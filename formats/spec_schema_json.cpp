@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/pipeline/object_settings.h"
 #include "core/pipeline/region_schema.h"
 #include "core/pipeline/settings_schema.h"
 
@@ -100,6 +101,13 @@ std::string spec_schema_json() {
         section["properties"][info.key.substr(dot + 1)] = key_schema(info);
     }
     for (const TableInfo& table : table_infos()) sections[table.array] = table_schema(table);
+    const Json own = {{"match", {{"type", "string"}, {"description", "Name, number or part number of the object."}}}};
+    Json object = {{"type", "object"}, {"properties", own}, {"required", {"match"}}};
+    for (const auto& [name, section] : sections.items())
+        if (section["type"] == "object") object["properties"][name] = section;
+    object["additionalProperties"] = false;
+    sections[std::string(kObjectArray)] = {
+        {"type", "array"}, {"description", kObjectHelp}, {"items", std::move(object)}};
     const Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                          {"title", "Fretwork spec"},
                          {"type", "object"},

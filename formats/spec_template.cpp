@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/pipeline/object_settings.h"
 #include "core/pipeline/region_schema.h"
 #include "core/pipeline/settings_schema.h"
 
@@ -43,6 +44,9 @@ std::string table_help() {
     out += "#\n# Each has a shape, with the keys that follow it here (one per line in a spec):\n";
     for (const RegionShapeInfo& info : region_shapes())
         out += fmt::format("#   {:<13} {}  {}\n", info.shape, info.help, info.example);
+    out +=
+        fmt::format("#\n# [[{}]]  {}\n#   match         its name, number or part number\n", kObjectArray, kObjectHelp);
+    out += "#   synthesis.seed = 5, shell.thickness_mm = 2 ... (one per line)\n";
     return out + "#\n# [[keep]]\n# shape = \"lowest\"\n# share = 0.05\n";
 }
 
@@ -95,6 +99,9 @@ std::string spec_markdown() {
                 keys += fmt::format("{}`{}`: {}", keys.empty() ? "" : " ", key.key, key.help);
         out += fmt::format("| `[[{}]]` | {} | {} |\n", info.array, info.help, keys);
     }
+    out += fmt::format(
+        "| `[[{}]]` | {} | `match`: its name, number or part number; then any key, as in `synthesis.seed = 5`. |\n",
+        kObjectArray, kObjectHelp);
     out += "\n| shape | meaning | example |\n|---|---|---|\n";
     for (const RegionShapeInfo& info : region_shapes())
         out += fmt::format("| `{}` | {} | {}{}{} |\n", info.shape, info.help, info.example.empty() ? "" : "`",

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "formats/length_unit.h"
+#include "formats/slicer_names.h"
 
 namespace fretwork {
 namespace {
@@ -21,7 +22,7 @@ void add_once(std::vector<std::string>& names, const std::string& name) {
 
 class ObjectLister {
   public:
-    explicit ObjectLister(Build& build) : build_(build) {}
+    explicit ObjectLister(Build& build) : build_(build), names_(threemf::slicer_names(build.package())) {}
 
     std::vector<ThreemfObject> list() {
         for (const Instance& item : build_.root().items)
@@ -55,7 +56,7 @@ class ObjectLister {
         if (added) {
             ThreemfObject& listed = objects_.emplace_back();
             listed.key = key;
-            listed.name = object.name;
+            listed.name = name_of(key);
             listed.part_number = object.part_number;
             listed.type = object.type;
             listed.least_scale = listed.most_scale = scale;
@@ -67,12 +68,20 @@ class ObjectLister {
         listed.most_scale = std::max(listed.most_scale, scale);
         for (const ObjectKey& parent : path_) {
             if (std::ranges::find(listed.parents, parent) == listed.parents.end()) listed.parents.push_back(parent);
-            add_once(listed.parent_names, build_.object(parent).name);
+            add_once(listed.parent_names, name_of(parent));
             add_once(listed.parent_names, build_.object(parent).part_number);
         }
     }
 
+    /// Its own name, else the slicer's.
+    [[nodiscard]] std::string name_of(const ObjectKey& key) const {
+        const auto named = names_.find(key.id);
+        const std::string& own = build_.object(key).name;
+        return own.empty() && named != names_.end() && key.part == build_.root_part() ? named->second : own;
+    }
+
     Build& build_;
+    std::map<threemf::ResourceId, std::string> names_;
     std::vector<ObjectKey> path_;
     std::map<ObjectKey, std::size_t> known_;
     std::vector<ThreemfObject> objects_;

@@ -14,7 +14,7 @@ namespace fretwork {
 
 struct ThreemfObject {
     threemf::ObjectKey key;
-    std::string name;
+    std::string name;  ///< where the model gives none, the one that a slicer has noted
     std::string part_number;
     std::string type;                         ///< "model", "support", ...
     std::vector<threemf::ObjectKey> parents;  ///< assemblies that hold it, directly or not

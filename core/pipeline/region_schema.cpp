@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/pipeline/object_settings.h"
 #include "core/pipeline/settings_schema.h"
 
 namespace fretwork {
@@ -189,6 +190,7 @@ const TableInfo& table_info(const SettingTable& table) {
     if (found != infos.end()) return *found;
     std::vector<std::string> known;
     for (const TableInfo& info : infos) known.push_back(info.array);
+    known.emplace_back(kObjectArray);
     throw InvalidSetting(fmt::format("{}{}unknown table [[{}]]; did you mean [[{}]]?", table.place,
                                      table.place.empty() ? "" : ": ", table.array, nearest_name(table.array, known)));
 }
@@ -300,6 +302,10 @@ std::span<const TableInfo> table_infos() {
 }
 
 void apply_table(Settings& settings, const SettingTable& table) {
+    if (table.array == kObjectArray) {
+        settings.objects.push_back(object_option_from(table));
+        return;
+    }
     const TableInfo& info = table_info(table);
     TableReader in(table);
     Region region = read_region(in);
@@ -338,6 +344,7 @@ std::vector<SettingTable> tables_from(const Settings& settings) {
         if (!fixture.load_case.empty()) table.entries.push_back({"case", fixture.load_case, {}});
         tables.push_back(std::move(table));
     }
+    for (const ObjectOption& option : settings.objects) tables.push_back(table_from(option));
     return tables;
 }
 

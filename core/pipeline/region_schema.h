@@ -1,4 +1,4 @@
-// The small schema of the entries of [[keep]], [[carve]], [[loads]] and [[fixtures]].
+// The small schema of the entries of [[keep]], [[carve]], [[loads]] and [[fixtures]]. [[object]] has its own file.
 #pragma once
 
 #include <span>

@@ -9,6 +9,7 @@
 
 #include "core/mesh/mesh_report.h"
 #include "core/pipeline/setting_value.h"
+#include "core/pipeline/settings.h"
 #include "core/reinforce/structural_optimizer.h"
 
 namespace fretwork {
@@ -64,6 +65,12 @@ struct OutputMeshRecord {
     double islands_volume_mm3 = 0.0;
 };
 
+/// Colours that stand for the extruders triangles are painted with; none where nothing is painted.
+struct PaintRecord {
+    PaintFormat format = PaintFormat::kNone;
+    std::vector<Rgb8> extruders;  ///< sRGB, of extruder 1, 2 ...
+};
+
 struct StageSeconds {
     std::string stage;
     double seconds = 0.0;  ///< wall clock
@@ -80,6 +87,7 @@ struct RunReport {
     std::vector<ReinforceRecord> iterations;
     StructureRecord structure;
     OutputMeshRecord mesh;
+    PaintRecord paint;
     std::vector<StageSeconds> seconds;  ///< in the order of the run
     double seconds_total = 0.0;
     double seconds_resynthesis = 0.0;  ///< part of "reinforce"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/mesh/region.h"
+#include "core/pipeline/setting_value.h"
 #include "core/reinforce/structural_optimizer.h"
 #include "core/solidify/solidify.h"
 #include "core/synthesis/synthesizer.h"
@@ -57,6 +58,8 @@ struct InputOptions {
     UpAxis up = UpAxis::kZ;         ///< the model is turned so that this axis becomes z
     double scale = 1.0;             ///< factor on the model's coordinates
     std::optional<double> size_mm;  ///< longest side after scaling; instead of `scale`
+    std::string objects;            ///< of a 3MF: names, numbers or part numbers, with commas between them
+    bool ignore_required = false;   ///< of a 3MF: read on where an unknown extension is required
 };
 
 struct ExemplarOptions {
@@ -115,6 +118,10 @@ struct FabricationOptions {
 struct OutputOptions {
     OutputColor colour = OutputColor::kExemplar;
     bool voxel_data = true;
+    bool thumbnail = true;
+    bool source = true;  ///< keep the model and the pictures in a 3MF
+    PaintFormat paint = PaintFormat::kNone;
+    int extruders = 4;
 };
 
 /// A region that pushes.
@@ -131,6 +138,12 @@ struct FixtureOption {
     std::string load_case;  ///< empty: holds in every case
 };
 
+/// Settings of their own for some objects of a model.
+struct ObjectOption {
+    std::string match;                         ///< name, number or part number of the object
+    std::vector<SettingAssignment> overrides;  ///< checked
+};
+
 /// The whole of a spec. Plain data: `settings_schema.h` knows names, ranges and help,
 /// `resolve_settings.h` derives what the stages need.
 struct Settings {
@@ -145,6 +158,7 @@ struct Settings {
     std::vector<Region> carve;  ///< if any: only these are carved, all else stays solid
     std::vector<LoadOption> loads;
     std::vector<FixtureOption> fixtures;
+    std::vector<ObjectOption> objects;
 };
 
 }  // namespace fretwork

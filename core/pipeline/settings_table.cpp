@@ -26,6 +26,8 @@ constexpr std::array kProfileNames{Named{LoadProfile::kAuto, "auto"}, Named{Load
                                    Named{LoadProfile::kHandling, "handling"}, Named{LoadProfile::kOwn, "own"}};
 constexpr std::array kColorNames{Named{OutputColor::kExemplar, "exemplar"}, Named{OutputColor::kSolid, "solid"},
                                  Named{OutputColor::kNone, "none"}};
+constexpr std::array kPaintNames{Named{PaintFormat::kNone, "none"}, Named{PaintFormat::kPrusa, "prusa"},
+                                 Named{PaintFormat::kBambu, "bambu"}};
 constexpr std::array kSideNames{Named{WallSide::kInward, "inward"}, Named{WallSide::kOutward, "outward"},
                                 Named{WallSide::kCentred, "centred"}};
 constexpr std::array kUpNames{Named{UpAxis::kX, "x"},       Named{UpAxis::kY, "y"},       Named{UpAxis::kZ, "z"},
@@ -40,6 +42,9 @@ const auto& names_of(LoadProfile) {
 }
 const auto& names_of(OutputColor) {
     return kColorNames;
+}
+const auto& names_of(PaintFormat) {
+    return kPaintNames;
 }
 const auto& names_of(WallSide) {
     return kSideNames;
@@ -190,6 +195,11 @@ void add_input(std::vector<SettingInfo>& t) {
     t.push_back(row("input.scale", FIELD(input.scale), "1", above(0, 1e6), "Factor on the model's coordinates."));
     t.push_back(row("input.size_mm", FIELD(input.size_mm), "mm", between(5, 5000),
                     "Longest side of the model; scales it. Instead of input.scale.", "the model's own size"));
+    t.push_back(row("input.objects", FIELD(input.objects), "1", {},
+                    "Objects of a 3MF to carve, by name, number or part number, with commas between them.",
+                    "all that are printed"));
+    t.push_back(row("input.ignore_required", FIELD(input.ignore_required), "1", {},
+                    "Carve a 3MF although it requires an extension that is not known; what that says is kept."));
 }
 
 void add_exemplar(std::vector<SettingInfo>& t) {
@@ -344,6 +354,13 @@ void add_output(std::vector<SettingInfo>& t) {
                     "Colours in the file: the picture's, its solid part's mean, or none."));
     t.push_back(
         row("output.voxel_data", FIELD(output.voxel_data), "1", {}, "Write the voxel grid into a 3MF as well."));
+    t.push_back(row("output.thumbnail", FIELD(output.thumbnail), "1", {}, "Put a picture of the result into a 3MF."));
+    t.push_back(row("output.source", FIELD(output.source), "1", {},
+                    "Keep the model and the pictures in a 3MF, so that it can be carved again from itself."));
+    t.push_back(row("output.paint", FIELD(output.paint), "1", {},
+                    "Paint the triangles of a 3MF with extruders, for PrusaSlicer or for BambuStudio and OrcaSlicer."));
+    t.push_back(row("output.extruders", FIELD(output.extruders), "1", between(1, 16),
+                    "Extruders to paint with; colours are brought down to as many."));
 }
 
 #undef FIELD
