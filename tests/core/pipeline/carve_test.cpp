@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <random>
 #include <thread>
 
 #include "core/base/error.h"
@@ -13,8 +12,6 @@
 
 namespace fretwork {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 CarveInput input_for(const TriangleMesh& mesh, const char* pattern) {
     return {mesh, "test model", make_builtin(pattern), 24.0, pattern};
@@ -109,27 +106,34 @@ TEST_CASE("carve: progress rises from 0 to 1 over all stages", "[pipeline]") {
     CHECK(stages.size() >= 8);
 }
 
-TEST_CASE("carve: stops soon after it is asked to, whenever that is", "[pipeline][cancel]") {
-    std::mt19937 rng(GENERATE(1u, 2u, 3u, 4u, 5u, 6u));
-    const int delay_ms = std::uniform_int_distribution<int>(0, 1500)(rng);
+// How long a stop takes is measured by the benchmark `cancel_latency`; here, that it is honoured wherever it comes.
+TEST_CASE("carve: stops at once when it is asked to, whenever that is", "[pipeline][cancel]") {
+    const double share = GENERATE(0.0, 0.03, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 0.97);
     std::stop_source source;
-    Clock::time_point asked = Clock::time_point::max();
+    std::size_t reports_after = 0;
+    const auto listen = [&](std::string_view, double fraction) {
+        if (source.stop_requested())
+            ++reports_after;
+        else if (fraction >= share)
+            source.request_stop();
+    };
+    CHECK_THROWS_AS(carve(input_for(small_vase(), "cells"), quick(48), {}, RunControl(listen, source.get_token())),
+                    Cancelled);
+    CHECK(reports_after == 0);
+}
+
+// From another thread, within a stage and between two reports.
+TEST_CASE("carve: a stop from another thread ends the run without a result", "[pipeline][cancel]") {
+    const int delay_ms = GENERATE(1, 40, 160, 420);
+    std::stop_source source;
+    double last = 0.0;
     std::jthread timer([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
-        asked = Clock::now();
         source.request_stop();
     });
-    bool cancelled = false;
-    try {
-        carve(input_for(small_vase(), "cells"), quick(64), {}, RunControl(nullptr, source.get_token()));
-    } catch (const Cancelled&) {
-        cancelled = true;
-    }
-    const auto ended = Clock::now();
-    timer.join();
-    CAPTURE(delay_ms, cancelled);
-    // The promise is 0.2 s on a machine that is free; a busy one or a sanitizer gets ten times as much.
-    if (cancelled) CHECK(ended - asked < std::chrono::seconds(2));
+    const RunControl run([&](std::string_view, double fraction) { last = fraction; }, source.get_token());
+    CHECK_THROWS_AS(carve(input_for(small_vase(), "cells"), quick(160), {}, run), Cancelled);
+    CHECK(last < 1.0);
 }
 
 TEST_CASE("carve: what is kept stays solid, what is not named for carving too", "[pipeline]") {
