@@ -11,7 +11,9 @@
 #include "cli/make_rule.h"
 #include "cli/pattern_options.h"
 #include "cli/run_options.h"
+#include "cli/scad_model.h"
 #include "core/base/error.h"
+#include "formats/spec_toml_reader.h"
 #include "formats/threemf_editor.h"
 
 namespace fretwork::cli {
@@ -48,8 +50,27 @@ PatternOptions with_own_flags(const CarveOptions& options) {
     return pattern;
 }
 
-CarveRequest request_of(const CarveOptions& options) {
+/// The file's own spec is the first word, a spec of --pattern the second, flags the last.
+CarveRequest request_of_scad(const std::string& path, PatternOptions pattern, const RunControl& run) {
+    const ScadOptions scad_options = take_scad_options(pattern);
+    pattern.parameters_of_model = true;
+    ScadModel scad = render_scad(path, scad_options, run);
+    SpecDocument document;
+    if (scad.spec) document = anchored(path, read_spec_toml(*scad.spec, path));
+    const SpecDocument more = spec_of(pattern);
+    document.assignments.insert(document.assignments.end(), more.assignments.begin(), more.assignments.end());
+    document.tables.insert(document.tables.end(), more.tables.begin(), more.tables.end());
+    CarveRequest request;
+    request.settings = settings_of(pattern, std::move(document));
+    request.model = std::move(scad.model);
+    request.warnings = std::move(scad.warnings);
+    request.read_beside.assign(scad.read.begin() + 1, scad.read.end());
+    return request;
+}
+
+CarveRequest request_of(const CarveOptions& options, const RunControl& run) {
     const PatternOptions pattern = with_own_flags(options);
+    if (is_scad(options.model.path)) return request_of_scad(options.model.path, pattern, run);
     if (options.again) return request_of_package(read_bytes(options.model), options.source, pattern);
     if (!options.source.empty()) throw InvalidSetting("--source goes with --again");
     CarveRequest request;
@@ -67,8 +88,10 @@ struct Opened {
 };
 
 Opened open(const CarveOptions& options, const RunControl& run) {
-    Opened opened{request_of(options), {}};
+    Opened opened{request_of(options, run), {}};
     opened.model = open_model(std::move(opened.request.model), opened.request.settings, run);
+    const std::vector<std::string>& beside = opened.request.read_beside;
+    opened.model.read_beside.insert(opened.model.read_beside.end(), beside.begin(), beside.end());
     if (options.run.quiet) return opened;
     for (const auto* warnings : {&opened.request.warnings, &opened.model.warnings})
         for (const std::string& warning : *warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
@@ -246,6 +269,7 @@ void add_carve(CLI::App& program, Action& chosen) {
         "  fretwork carve bunny.off --size-mm 100 --exemplar leaves.png --thickness-mm 2.4 -o bunny.3mf\n"
         "  fretwork carve project.3mf --objects lid,box --pattern waves -o carved.3mf\n"
         "  fretwork carve carved.3mf --again --seed 2 -o other.3mf\n"
+        "  fretwork carve box.scad -D 'width=40' --pattern waves -o box.3mf\n"
         "  openscad -o - --export-format off box.scad | fretwork carve - --input-format off --pattern box.toml -o "
         "box.stl");
     command->callback([options, &chosen] {

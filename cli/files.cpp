@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "cli/scad_model.h"
 #include "core/base/error.h"
 #include "formats/atomic_write.h"
 #include "formats/obj_materials.h"
@@ -94,6 +95,12 @@ ModelBytes read_bytes(const ModelSource& source) {
 }
 
 MeshFile read_model(const ModelSource& source, const RunControl& run) {
+    if (is_scad(source.path)) {
+        const ScadModel scad = render_scad(source.path, {}, run);
+        MeshFile file = read_model(scad.model, source.cad, run);
+        file.warnings.insert(file.warnings.begin(), scad.warnings.begin(), scad.warnings.end());
+        return file;
+    }
     return read_model(read_bytes(source), source.cad, run);
 }
 

@@ -44,7 +44,7 @@ LengthUnit unit_named(const std::string& name);
 MeshFormat output_format(const std::string& path, const std::string& format);
 
 /// Formats that are read and written, as help texts name them.
-inline constexpr const char* kReadable = "3MF, STL, OBJ, PLY, OFF, AMF, STEP, IGES or BREP";
+inline constexpr const char* kReadable = "3MF, STL, OBJ, PLY, OFF, AMF, STEP, IGES, BREP or OpenSCAD";
 inline constexpr const char* kWritable = "3MF, STL, OBJ, PLY, OFF, AMF or GLB";
 
 /// A mesh in a file's bytes, and the colours of an OBJ that go beside them.

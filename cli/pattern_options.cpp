@@ -31,6 +31,7 @@ void add_parameter_set(const PatternOptions& options, SpecDocument& document) {
         throw InvalidSetting("-p FILE and -P SET go together: the file of parameter sets, and the set to take");
     if (options.parameter_file.empty()) return;
     for (const SettingAssignment& entry : read_parameter_set(fs::path(options.parameter_file), options.parameter_set)) {
+        if (options.parameters_of_model && entry.key.find('.') == std::string::npos) continue;
         const auto* text = std::get_if<std::string>(&entry.value);
         document.assignments.push_back(text ? parse_setting(entry.key, *text, entry.place) : entry);
     }
@@ -126,11 +127,18 @@ bool names_spec(const std::string& pattern) {
 }
 
 Settings settings_of(const PatternOptions& options) {
-    if (!names_spec(options.pattern)) return settings_of(options, {});
-    SpecDocument document = read_spec_toml(fs::path(options.pattern));
-    anchor_paths(options.pattern, document.assignments);
-    for (SettingTable& table : document.tables) anchor_paths(options.pattern, table.entries);
-    return settings_of(options, std::move(document));
+    return settings_of(options, spec_of(options));
+}
+
+SpecDocument spec_of(const PatternOptions& options) {
+    if (!names_spec(options.pattern)) return {};
+    return anchored(options.pattern, read_spec_toml(fs::path(options.pattern)));
+}
+
+SpecDocument anchored(const std::string& file, SpecDocument document) {
+    anchor_paths(file, document.assignments);
+    for (SettingTable& table : document.tables) anchor_paths(file, table.entries);
+    return document;
 }
 
 Settings settings_of(const PatternOptions& options, SpecDocument document) {

@@ -18,6 +18,7 @@ struct PatternOptions {
     std::string exemplar;  ///< picture
     std::string mask;
     std::string parameter_file, parameter_set;
+    bool parameters_of_model = false;  ///< names without a dot in the parameter set are for OpenSCAD
     std::vector<std::string> assignments;
     std::string preset;
     std::string up;
@@ -35,6 +36,12 @@ Settings settings_of(const PatternOptions& options);
 
 /// The same on top of those of an earlier run, in the place of a spec.
 Settings settings_of(const PatternOptions& options, SpecDocument document);
+
+/// The spec that --pattern names, or an empty one. Paths in it are meant from where it lies.
+SpecDocument spec_of(const PatternOptions& options);
+
+/// The document with its paths meant from the folder of `file`.
+SpecDocument anchored(const std::string& file, SpecDocument document);
 
 /// Whether --pattern names a spec rather than a built-in pattern.
 bool names_spec(const std::string& pattern);

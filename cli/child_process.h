@@ -1,0 +1,22 @@
+// Other programs, run and listened to.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/run_control.h"
+
+namespace fretwork::cli {
+
+struct ProcessResult {
+    int exit_code = 0;  ///< 128 + signal where one ended it
+    std::string out;
+    std::string err;
+};
+
+/// Runs a program found along PATH, without standard input, and waits for it. A stop ends it and its children.
+/// \param arguments  the program first
+/// \throws FileError  it cannot be started. \throws Cancelled
+ProcessResult run_process(const std::vector<std::string>& arguments, const RunControl& run);
+
+}  // namespace fretwork::cli

@@ -1,0 +1,39 @@
+// OpenSCAD files as models, rendered by OpenSCAD itself.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/files.h"
+#include "cli/pattern_options.h"
+#include "core/base/run_control.h"
+
+namespace fretwork::cli {
+
+/// Whether the path names an OpenSCAD file.
+bool is_scad(const std::string& path);
+
+/// What of the flags is for OpenSCAD, and what for Fretwork: keys of a spec hold a dot, variables of OpenSCAD do not.
+struct ScadOptions {
+    std::vector<std::string> defines;  ///< NAME=VALUE as given with -D
+    std::string parameter_file, parameter_set;
+};
+
+/// Moves what is for OpenSCAD out of `pattern`. Parameter sets stay, since they may hold keys of both kinds.
+ScadOptions take_scad_options(PatternOptions& pattern);
+
+struct ScadModel {
+    ModelBytes model;                   ///< as OFF, in millimetres
+    std::optional<std::string> spec;    ///< from the file's comment, see spec_in_scad
+    std::vector<std::string> read;      ///< every file that OpenSCAD has read
+    std::vector<std::string> warnings;  ///< what OpenSCAD has said, and variables that the file does not have
+};
+
+/// Renders the file. OpenSCAD reports many errors on the side and ends as if all were well; these are found.
+/// \throws FileError       the file cannot be opened, or OpenSCAD cannot be run.
+/// \throws InvalidInput    OpenSCAD reports an error or makes nothing.
+/// \throws InvalidSetting  a parameter set that does not exist, or holds a name that the file does not assign.
+ScadModel render_scad(const std::string& path, const ScadOptions& options, const RunControl& run);
+
+}  // namespace fretwork::cli
