@@ -98,6 +98,12 @@ class Improver {
         }
     }
 
+    /// A label that shows solid at the probe as it stands has been tried.
+    void try_snapped(const Choice& seen) {
+        if (problem_.solid_at(texel_at(problem_.map, seen.part, seen.label.origin, *probe_))) return;
+        consider(snapped_candidate(problem_, level_, v_, *probe_, seen));
+    }
+
     /// \return how many of the candidates that takes up
     int try_neighbors() {
         const SynthesisSettings& s = problem_.settings;
@@ -111,8 +117,7 @@ class Improver {
         const std::size_t coherent = std::min(labels_.size(), most);
         try_coherent(coherent);
         if (probe_ != nullptr)
-            for (std::size_t i = 0; i < coherent; ++i)
-                consider(snapped_candidate(problem_, level_, v_, *probe_, neighbor(labels_[i].first_seen)));
+            for (std::size_t i = 0; i < coherent; ++i) try_snapped(neighbor(labels_[i].first_seen));
 
         std::size_t transported = 0;
         if (transports) transported = std::min(labels_.size(), static_cast<std::size_t>(s.transported));
@@ -131,24 +136,27 @@ class Improver {
         if (level_.rank < kFineLevels) count = std::min(count, s.fine_random_candidates);
         if (probe_ != nullptr) count = std::max(count, kLeastRandomWhenForced);
         const ItemRandom random(s.seed, RandomStream::kSynthesisCandidates, epoch_, level_.place(v_));
-        // With steps of translation the label's origin is rounded and moves the texel.
-        if (probe_ == nullptr && s.translations == 0) {
+        // With steps of translation the label's origin is rounded and moves the texel. A probe elsewhere than at the
+        // voxel says which texel is seen there, not which one the voxel shows.
+        if (s.translations == 0 && (probe_ == nullptr || *probe_ == level_.points[v_])) {
             try_random_texels(random, static_cast<std::uint32_t>(count));
             return;
         }
         for (int i = 0; i < count; ++i) {
             const std::uint64_t bits = random.draw(static_cast<std::uint32_t>(i));
-            const PlaneIndex plane = random_.plane(v_, bits);
-            consider(probe_ != nullptr
-                         ? random_.candidate(v_, plane, random_.solid_texel(bits), *probe_, bits)
-                         : random_.candidate(v_, plane, RandomCandidates::texel(bits), level_.points[v_], bits));
+            const FixedPoint& seen_at = probe_ != nullptr ? *probe_ : level_.points[v_];
+            consider(random_.candidate(v_, random_.plane(v_, bits), random_texel(bits), seen_at, bits));
         }
+    }
+
+    [[nodiscard]] TexelPosition random_texel(std::uint64_t bits) const {
+        return probe_ != nullptr ? random_.solid_texel(bits) : RandomCandidates::texel(bits);
     }
 
     /// Texel first, for all at once: most fail by it.
     void try_random_texels(const ItemRandom& random, std::uint32_t count) {
         for (std::uint32_t i = 0; i < count; ++i) {
-            const TexelPosition texel = RandomCandidates::texel(random.draw(i));
+            const TexelPosition texel = random_texel(random.draw(i));
             screened_.u[i] = texel.u;
             screened_.v[i] = texel.v;
         }

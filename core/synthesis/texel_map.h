@@ -31,6 +31,8 @@ struct LevelOffset {
 /// A surface point in finest voxels, those of the full run in a draft, 12 fractional bits.
 struct FixedPoint {
     std::int32_t x = 0, y = 0, z = 0;
+
+    friend bool operator==(const FixedPoint&, const FixedPoint&) = default;
 };
 
 /// \param skipped_levels  SynthesisSettings
