@@ -30,6 +30,18 @@ std::vector<std::vector<VoxelIndex>> spanning_gaps(const Adjacency& graph, const
     return paths;
 }
 
+/// No component of the shell carries more than one piece.
+bool nothing_to_join(const ShellComponents& pieces, const ShellComponents& shell_components) {
+    std::vector<std::uint32_t> piece_of(shell_components.count(), kNoComponent);
+    for (std::size_t v = 0; v < pieces.of.size(); ++v) {
+        if (pieces.of[v] == kNoComponent) continue;
+        std::uint32_t& piece = piece_of[shell_components.of[v]];
+        if (piece == kNoComponent) piece = pieces.of[v];
+        if (piece != pieces.of[v]) return false;
+    }
+    return true;
+}
+
 void make_solid(const std::vector<VoxelIndex>& voxels, SolidStates& solid, std::vector<VoxelIndex>& covered) {
     for (const VoxelIndex v : voxels) solid[v] = SolidState::kSolid;
     covered.insert(covered.end(), voxels.begin(), voxels.end());
@@ -37,12 +49,14 @@ void make_solid(const std::vector<VoxelIndex>& voxels, SolidStates& solid, std::
 
 }  // namespace
 
-ConnectedPieces connect_pieces(const SurfaceVoxels& shell, const Adjacency& firm, BridgePainter& painter,
-                               DilatedPart part, SolidStates& solid, const RunControl& run) {
+ConnectedPieces connect_pieces(const SurfaceVoxels& shell, const Adjacency& firm,
+                               const ShellComponents& shell_components, BridgePainter& painter, DilatedPart part,
+                               SolidStates& solid, const RunControl& run) {
     ConnectedPieces result;
     for (int attempt = 0; attempt < 2; ++attempt) {
         const ShellComponents pieces = connected_components(firm, solid, SolidState::kSolid);
         run.throw_if_stopped();
+        if (nothing_to_join(pieces, shell_components)) break;
         // The second time every path follows firm links, so that its voxels alone make the connection.
         const bool along_firm_links = attempt > 0;
         const auto paths = spanning_gaps(along_firm_links ? firm : shell.adjacency, pieces, solid);

@@ -24,9 +24,11 @@ struct ConnectedPieces {
 /// links, so that the promise holds on every shell.
 ///
 /// Promise  afterwards each component of the shell that had a solid voxel has one firm piece.
-/// Cost     one pass over the links, rarely two.
-ConnectedPieces connect_pieces(const SurfaceVoxels& shell, const Adjacency& firm, BridgePainter& painter,
-                               DilatedPart part, SolidStates& solid, const RunControl& run = {});
+/// Cost     counting the pieces; only where there is something to join, shortest paths over all links.
+/// \param shell_components  components of `shell.adjacency`
+ConnectedPieces connect_pieces(const SurfaceVoxels& shell, const Adjacency& firm,
+                               const ShellComponents& shell_components, BridgePainter& painter, DilatedPart part,
+                               SolidStates& solid, const RunControl& run = {});
 
 /// Gives each component of the shell without a solid voxel a disc around its lowest voxel to start from.
 /// \return the voxels of the discs, ascending.

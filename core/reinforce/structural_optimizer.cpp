@@ -165,7 +165,7 @@ void StructuralOptimizer::Impl::connect_and_seed(SolidStates& state, Outcome& ou
     const std::vector<VoxelIndex> seeds =
         seed_empty_components(shell_components, painter, 2.0 * settings.pattern_radius_voxels, state);
     const DilatedPart part = settings.rules == ReinforceRules::kPaper ? DilatedPart::kWholePath : DilatedPart::kGap;
-    const ConnectedPieces connected = connect_pieces(shell, firm, painter, part, state, run);
+    const ConnectedPieces connected = connect_pieces(shell, firm, shell_components, painter, part, state, run);
     outcome.covered.insert(outcome.covered.end(), seeds.begin(), seeds.end());
     outcome.covered.insert(outcome.covered.end(), connected.covered.begin(), connected.covered.end());
     outcome.record.bridges_connect += connected.bridges;
