@@ -49,7 +49,7 @@ struct BeamModel::Impl {
     Impl(const AbstractGraph& graph_in, const BeamModelSettings& settings_in)
         : graph(graph_in), settings(settings_in) {}
 
-    void build_geometry(const SurfaceVoxels& shell, const SolidStates& solid);
+    void build_geometry(const SurfaceVoxels& shell, const SolidStates& solid, std::vector<float> half_width_voxels);
     void add_loads(const std::vector<SampleLoads>& cases);
     [[nodiscard]] std::vector<std::uint8_t> fixed_nodes(const SampleLoads& loads) const;
     void smooth_slivers(std::span<const EdgeState> states, std::vector<double>& scores_pa) const;
@@ -57,8 +57,9 @@ struct BeamModel::Impl {
                      std::vector<double>& scores_pa) const;
 };
 
-void BeamModel::Impl::build_geometry(const SurfaceVoxels& shell, const SolidStates& solid) {
-    widths = beam_widths(shell, solid, graph, settings.bridge_half_width_voxels);
+void BeamModel::Impl::build_geometry(const SurfaceVoxels& shell, const SolidStates& solid,
+                                     std::vector<float> half_width_voxels) {
+    widths = beam_widths(shell, solid, graph, std::move(half_width_voxels), settings.bridge_half_width_voxels);
     BeamGeometry geometry;
     geometry.thickness_mm = settings.thickness_mm;
     mesh = build_beam_wedge_mesh(shell, graph, widths.at_sample_voxels, geometry);
@@ -103,10 +104,10 @@ void BeamModel::Impl::add_loads(const std::vector<SampleLoads>& cases) {
 }
 
 BeamModel::BeamModel(const SurfaceVoxels& shell, const SolidStates& solid, const AbstractGraph& graph,
-                     const ForceProfile& profile, const Material& material, const BeamModelSettings& settings,
+                     std::vector<float> half_width_voxels, const ForceProfile& profile, const Material& material, const BeamModelSettings& settings,
                      const RunControl& run)
     : impl_(std::make_unique<Impl>(graph, settings)) {
-    impl_->build_geometry(shell, solid);
+    impl_->build_geometry(shell, solid, std::move(half_width_voxels));
     run.throw_if_stopped();
     impl_->elements.emplace(impl_->mesh, material, settings.thickness_mm);
     run.throw_if_stopped();

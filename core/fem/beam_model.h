@@ -26,10 +26,11 @@ class BeamModel {
   public:
     /// Builds geometry and element matrices, orders the equations. References must outlive the model.
     /// Load cases with the same supports share a factorisation.
+    /// \param half_width_voxels  of `beam_half_widths`
     /// \throws InvalidSetting  material out of range (`solid_elements.h`).
     /// \throws SolverFailure   no memory.
     BeamModel(const SurfaceVoxels& shell, const SolidStates& solid, const AbstractGraph& graph,
-              const ForceProfile& profile, const Material& material, const BeamModelSettings& settings,
+              std::vector<float> half_width_voxels, const ForceProfile& profile, const Material& material, const BeamModelSettings& settings,
               const RunControl& run = {});
     ~BeamModel();
     BeamModel(BeamModel&&) noexcept;

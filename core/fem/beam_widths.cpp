@@ -74,9 +74,13 @@ bool is_sliver(const AbstractGraph& graph, EdgeIndex e, const std::vector<float>
 
 }  // namespace
 
+std::vector<float> beam_half_widths(const SurfaceVoxels& shell, const SolidStates& solid) {
+    return pattern_half_width(shell.adjacency, solid, kWidestHalfVoxels);
+}
+
 BeamWidths beam_widths(const SurfaceVoxels& shell, const SolidStates& solid, const AbstractGraph& graph,
-                       double bridge_half_width_voxels) {
-    std::vector<float> half_width = pattern_half_width(shell.adjacency, solid, kWidestHalfVoxels);
+                       std::vector<float> half_width_voxels, double bridge_half_width_voxels) {
+    const std::vector<float>& half_width = half_width_voxels;
     const std::vector<double> border_mm = border_lengths_mm(shell, solid, graph);
     const double voxel_mm = shell.grid.voxel_mm;
     BeamWidths widths;
@@ -91,7 +95,7 @@ BeamWidths beam_widths(const SurfaceVoxels& shell, const SolidStates& solid, con
         }
         widths.along_edge_mm.push_back(width_mm);
     }
-    widths.half_width_voxels = std::move(half_width);
+    widths.half_width_voxels = std::move(half_width_voxels);
     return widths;
 }
 

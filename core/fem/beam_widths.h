@@ -25,7 +25,11 @@ struct BeamWidths {
 /// but an accident of the sampling. It is one where its width is under half of the narrowest place along its path and
 /// under a quarter of its length.
 /// Cost: one pass over the links.
+/// \param half_width_voxels  of `beam_half_widths`
 BeamWidths beam_widths(const SurfaceVoxels& shell, const SolidStates& solid, const AbstractGraph& graph,
-                       double bridge_half_width_voxels);
+                       std::vector<float> half_width_voxels, double bridge_half_width_voxels);
+
+/// `pattern_half_width` with a bound that does not matter here. Does not need the graph: the two can be made at once.
+std::vector<float> beam_half_widths(const SurfaceVoxels& shell, const SolidStates& solid);
 
 }  // namespace fretwork

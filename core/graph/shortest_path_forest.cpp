@@ -1,6 +1,7 @@
 #include "core/graph/shortest_path_forest.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <tuple>
 
@@ -9,22 +10,24 @@ namespace {
 
 constexpr GraphDistance kNotWaiting = kUnreached;
 
+GraphDistance link_distance(float length_voxels) {
+    return std::max<GraphDistance>(1, to_distance(static_cast<double>(length_voxels)));
+}
+
 }  // namespace
 
 ForestGrower::ForestGrower(const Adjacency& graph, std::vector<std::uint8_t> included)
     : graph_(&graph), included_(std::move(included)) {
-    lengths_.reserve(graph.length_voxels.size());
-    GraphDistance longest = kDistanceUnit;
-    GraphDistance shortest = kUnreached;
+    // Of one link at least; the bits of positive numbers are in the order of the numbers.
+    std::uint32_t shortest = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max());
+    std::uint32_t longest = 0;
     for (const float length : graph.length_voxels) {
-        const GraphDistance d = std::max<GraphDistance>(1, to_distance(length));
-        lengths_.push_back(d);
-        longest = std::max(longest, d);
-        shortest = std::min(shortest, d);
+        shortest = std::min(shortest, std::bit_cast<std::uint32_t>(length));
+        longest = std::max(longest, std::bit_cast<std::uint32_t>(length));
     }
-    if (shortest != kUnreached) width_ = shortest;
+    if (longest != 0) width_ = link_distance(std::bit_cast<float>(shortest));
     // A link from bucket k ends in bucket k + longest / width + 1 at most.
-    ring_.resize(longest / width_ + 2);
+    ring_.resize(std::max(kDistanceUnit, link_distance(std::bit_cast<float>(longest))) / width_ + 2);
     clear();
 }
 
@@ -80,7 +83,7 @@ void ForestGrower::relax_links(VoxelIndex v, GraphDistance limit) {
     const std::uint32_t owner = forest_.owner[v];
     for (std::uint32_t e = graph_->first[v]; e < graph_->first[v + 1]; ++e) {
         const VoxelIndex w = graph_->neighbor[e];
-        const GraphDistance d = base + lengths_[e];
+        const GraphDistance d = base + link_distance(graph_->length_voxels[e]);
         const GraphDistance old = forest_.distance[w];
         if (d > old || d > limit || (!included_.empty() && included_[w] == 0)) continue;
         if (d == old && std::tie(owner, v) >= std::tie(forest_.owner[w], forest_.parent[w])) continue;
@@ -93,7 +96,8 @@ void ForestGrower::relax_links(VoxelIndex v, GraphDistance limit) {
 }
 
 void ForestGrower::grow(GraphDistance limit) {
-    std::ranges::stable_sort(planted_, {}, [&](VoxelIndex v) { return forest_.distance[v]; });
+    const auto distance = [&](VoxelIndex v) { return forest_.distance[v]; };
+    if (!std::ranges::is_sorted(planted_, {}, distance)) std::ranges::stable_sort(planted_, {}, distance);
     std::size_t next_planted = 0;
     GraphDistance current = 0;
     std::vector<VoxelIndex> open;

@@ -79,7 +79,6 @@ class ForestGrower {
 
     const Adjacency* graph_;
     std::vector<std::uint8_t> included_;
-    std::vector<GraphDistance> lengths_;  ///< per link
     GraphDistance width_ = kDistanceUnit;
     ShortestPathForest forest_;
     std::vector<VoxelIndex> planted_;

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
+#include "core/base/parallel.h"
+#include "core/fem/beam_widths.h"
 #include "core/graph/connect_samples.h"
 #include "core/graph/poisson_disk.h"
 #include "core/reinforce/force_profile_score.h"
@@ -56,25 +59,36 @@ ReinforcementTurn::ReinforcementTurn(const ReinforceContext& context, BridgePain
     : context_(context), painter_(painter), state_(state) {
     const SurfaceVoxels& shell = context.shell;
     const ReinforceSettings& settings = context.settings;
-    SampleSettings sampling;
-    sampling.target = static_cast<std::size_t>(settings.samples);
-    sampling.seed = settings.seed + static_cast<std::uint64_t>(iteration) - 1;
-    sampling.start_radius_voxels = sample_radius;
-    Samples samples = poisson_samples(shell.adjacency, context.shell_components, state, sampling, run);
-    sample_radius = samples.radius_voxels;
-    run.checkpoint("structure", 0.1);
-    const bool printed = settings.rules == ReinforceRules::kPaper;
-    graph_ = connect_samples(shell.adjacency, state, std::move(samples.voxels),
-                             printed ? ExtendFrom::kSource : ExtendFrom::kTree, run);
-    places_ = edge_places(shell, graph_);
+    // The two do not need each other, and neither has enough loops to keep all threads busy.
+    std::vector<float> half_width_voxels;
+    parallel_for(2, 1, [&](std::size_t task) {
+        if (task == 0)
+            build_graph(iteration, sample_radius, run);
+        else
+            half_width_voxels = beam_half_widths(shell, state);
+    });
     run.checkpoint("structure", 0.2);
+    places_ = edge_places(shell, graph_);
     BeamModelSettings model;
     model.thickness_mm = settings.thickness_mm;
     model.soft_factor = settings.soft_factor;
     model.bridge_half_width_voxels = settings.pattern_radius_voxels;
-    model_.emplace(shell, state, graph_, context.profile, context.material, model, run);
+    model_.emplace(shell, state, graph_, std::move(half_width_voxels), context.profile, context.material, model, run);
     for (const AbstractEdge& edge : graph_.edges) states_.push_back(edge.state);
     run.checkpoint("structure", 0.4);
+}
+
+void ReinforcementTurn::build_graph(int iteration, std::vector<double>& sample_radius, const RunControl& run) {
+    const Adjacency& surface = context_.shell.adjacency;
+    SampleSettings sampling;
+    sampling.target = static_cast<std::size_t>(context_.settings.samples);
+    sampling.seed = context_.settings.seed + static_cast<std::uint64_t>(iteration) - 1;
+    sampling.start_radius_voxels = sample_radius;
+    Samples samples = poisson_samples(surface, context_.shell_components, state_, sampling, run);
+    sample_radius = samples.radius_voxels;
+    const bool printed = context_.settings.rules == ReinforceRules::kPaper;
+    graph_ = connect_samples(surface, state_, std::move(samples.voxels),
+                             printed ? ExtendFrom::kSource : ExtendFrom::kTree, run);
 }
 
 void ReinforcementTurn::renew_scores(const RunControl& run) {

@@ -72,6 +72,7 @@ class ReinforcementTurn {
     [[nodiscard]] const std::vector<VoxelIndex>& covered() const { return covered_; }
 
   private:
+    void build_graph(int iteration, std::vector<double>& sample_radius, const RunControl& run);
     void renew_scores(const RunControl& run);
     void add(EdgeIndex e, BridgeReason reason);
     bool paint_within(EdgeIndex e, BridgeReason reason, std::size_t& voxels_left);
