@@ -205,16 +205,16 @@ bool ReinforcementTurn::widen_or_bridge(const std::vector<EdgeIndex>& over, doub
     return std::ranges::all_of(taken, [&](EdgeIndex e) { return paint_within(e, BridgeReason::kStress, voxels_left); });
 }
 
-void ReinforcementTurn::stress_within_budget(double limit_pa, int solutions, std::size_t& voxels_left,
+void ReinforcementTurn::stress_within_budget(double limit_pa, int rounds, std::size_t& voxels_left,
                                              const RunControl& run) {
     strand_half_voxels_.assign(states_.size(), -1.0);
-    for (int solution = 0;; ++solution) {
-        met_ = solid_edges_above(limit_pa).empty();
+    for (int round = 0; round < rounds; ++round) {
+        // What the last round has gained, the next turn sees.
+        if (round > 0) renew_scores(run);
         const std::vector<EdgeIndex> over = solid_edges_above(kAim * limit_pa);
-        if (over.empty() || solution == solutions) return;
+        if (over.empty()) return;
         if (!widen_or_bridge(over, kAim * limit_pa, voxels_left)) return;
         close_filled_gaps();
-        renew_scores(run);
     }
 }
 

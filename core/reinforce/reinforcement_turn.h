@@ -50,11 +50,11 @@ class ReinforcementTurn {
     /// As printed: bridges until no edge, empty ones included, is above `limit_pa` or none is empty.
     void stress_as_printed(double limit_pa, const RunControl& run);
 
-    /// At most `solutions` times: solid edges above the aim, a share of `limit_pa`, are widened in proportion to their
+    /// At most `rounds` times: solid edges above the aim, a share of `limit_pa`, are widened in proportion to their
     /// score, as for a fully stressed design; where nothing is left to widen, bridges are built over the empty edges
     /// of highest score. Ends when no solid edge is above the aim, candidates run out or the budget is spent.
     /// \param voxels_left  reduced by what is painted
-    void stress_within_budget(double limit_pa, int solutions, std::size_t& voxels_left, const RunControl& run);
+    void stress_within_budget(double limit_pa, int rounds, std::size_t& voxels_left, const RunControl& run);
 
     /// Bridges wherever the way round is longer than `geodesic_factor` times the extent of the component.
     void geodesics(std::size_t& voxels_left, const RunControl& run);
@@ -64,8 +64,6 @@ class ReinforcementTurn {
 
     [[nodiscard]] const ReinforceRecord& record() const { return record_; }
     [[nodiscard]] bool out_of_budget() const { return out_of_budget_; }
-    /// No solid edge is above the limit any more, as far as the model of this turn knows.
-    [[nodiscard]] bool met() const { return met_; }
     [[nodiscard]] bool out_of_candidates() const { return out_of_candidates_; }
     [[nodiscard]] std::size_t bridges() const { return bridges_.size(); }
     /// Voxels of the painted bridges, with repeats.
@@ -97,7 +95,6 @@ class ReinforcementTurn {
     std::vector<VoxelIndex> covered_;
     ReinforceRecord record_;
     bool out_of_budget_ = false;
-    bool met_ = false;
     bool out_of_candidates_ = false;
 };
 

@@ -17,9 +17,9 @@
 namespace fretwork {
 namespace {
 
-/// Solutions of the equilibrium in one turn. Fewer would make bridges that are blended into the pattern sooner, but
-/// every turn also costs an abstract graph, a model and a resynthesis.
-constexpr int kSolutionsPerTurn = 4;
+/// Rounds of bridges in one turn, each after a solution of the equilibrium. Fewer would make bridges that are blended
+/// into the pattern sooner, but every turn also costs an abstract graph, a model and a resynthesis.
+constexpr int kRoundsPerTurn = 4;
 
 /// A turn has gained when the highest score or the 99th percentile is this much below the best so far.
 constexpr double kGain = 0.95;
@@ -212,10 +212,9 @@ void StructuralOptimizer::Impl::reinforce(SolidStates& state, Outcome& outcome, 
     const bool met = turn.record().max_score_pa <= limit;
     const bool hopeless = outcome.progress.turns_without_gain >= kTurnsWithoutGain;
     const bool spent = outcome.progress.budget_spent;
-    if (!met && !hopeless && !spent) turn.stress_within_budget(limit, kSolutionsPerTurn, outcome.voxels_left, run);
-    // The geodesic criterion looks at what the first one leaves when it is done, or hopeless.
-    const bool stress_is_done = (met || turn.met() || turn.bridges() == 0) && !turn.out_of_budget() && !spent;
-    if (stress_is_done && settings.geodesic_factor > 0.0) turn.geodesics(outcome.voxels_left, run);
+    if (!met && !hopeless && !spent) turn.stress_within_budget(limit, kRoundsPerTurn, outcome.voxels_left, run);
+    // As printed: in every turn, on what the bridges against stress have left.
+    if (!turn.out_of_budget() && !spent && settings.geodesic_factor > 0.0) turn.geodesics(outcome.voxels_left, run);
     outcome.progress.budget_spent = spent || turn.out_of_budget();
     merge_record(turn.record(), outcome.record);
     outcome.covered.insert(outcome.covered.end(), turn.covered().begin(), turn.covered().end());
