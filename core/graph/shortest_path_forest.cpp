@@ -95,6 +95,22 @@ void ForestGrower::relax_links(VoxelIndex v, GraphDistance limit) {
     }
 }
 
+/// The front is spread over the whole shell, so that nearly every vertex has to be waited for; ask for it early.
+void ForestGrower::fetch_ahead(const std::vector<VoxelIndex>& open, std::size_t at) const {
+    constexpr std::size_t kFar = 16;
+    constexpr std::size_t kNear = 6;
+    if (at + kFar < open.size()) {
+        __builtin_prefetch(&graph_->first[open[at + kFar]]);
+        __builtin_prefetch(&waiting_in_[open[at + kFar]]);
+        __builtin_prefetch(&forest_.distance[open[at + kFar]]);
+    }
+    if (at + kNear < open.size()) {
+        const std::uint32_t link = graph_->first[open[at + kNear]];
+        __builtin_prefetch(graph_->neighbor.data() + link);
+        __builtin_prefetch(graph_->length_voxels.data() + link);
+    }
+}
+
 void ForestGrower::grow(GraphDistance limit) {
     const auto distance = [&](VoxelIndex v) { return forest_.distance[v]; };
     if (!std::ranges::is_sorted(planted_, {}, distance)) std::ranges::stable_sort(planted_, {}, distance);
@@ -105,7 +121,9 @@ void ForestGrower::grow(GraphDistance limit) {
         if (waiting_ == 0) current = bucket(forest_.distance[planted_[next_planted]]);
         open.swap(ring_[current % ring_.size()]);
         waiting_ -= open.size();
-        for (const VoxelIndex v : open) {
+        for (std::size_t i = 0; i < open.size(); ++i) {
+            fetch_ahead(open, i);
+            const VoxelIndex v = open[i];
             // Whoever was improved after it came here waited, and was opened, in an earlier bucket.
             if (waiting_in_[v] != current) continue;
             waiting_in_[v] = kNotWaiting;

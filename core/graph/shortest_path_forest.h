@@ -75,6 +75,7 @@ class ForestGrower {
   private:
     void push(VoxelIndex v, GraphDistance at);
     void relax_links(VoxelIndex v, GraphDistance limit);
+    void fetch_ahead(const std::vector<VoxelIndex>& open, std::size_t at) const;
     [[nodiscard]] GraphDistance bucket(GraphDistance d) const { return d / width_; }
 
     const Adjacency* graph_;
