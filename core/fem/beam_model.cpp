@@ -104,8 +104,8 @@ void BeamModel::Impl::add_loads(const std::vector<SampleLoads>& cases) {
 }
 
 BeamModel::BeamModel(const SurfaceVoxels& shell, const SolidStates& solid, const AbstractGraph& graph,
-                     std::vector<float> half_width_voxels, const ForceProfile& profile, const Material& material, const BeamModelSettings& settings,
-                     const RunControl& run)
+                     std::vector<float> half_width_voxels, const ForceProfile& profile, const Material& material,
+                     const BeamModelSettings& settings, const RunControl& run)
     : impl_(std::make_unique<Impl>(graph, settings)) {
     impl_->build_geometry(shell, solid, std::move(half_width_voxels));
     run.throw_if_stopped();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/counter_random.h"
 #include "core/base/error.h"
@@ -14,16 +15,19 @@ namespace {
 /// Solid voxels of each component of the shell, in the order in which they are offered as samples.
 std::vector<std::vector<VoxelIndex>> shuffled_by_component(const ShellComponents& shell_components,
                                                            const SolidStates& solid, std::uint64_t seed) {
-    std::vector<std::vector<VoxelIndex>> order(shell_components.count());
+    using Card = std::pair<std::uint64_t, VoxelIndex>;
+    std::vector<std::vector<Card>> cards(shell_components.count());
     for (VoxelIndex v = 0; v < solid.size(); ++v)
-        if (solid[v] == SolidState::kSolid) order[shell_components.of[v]].push_back(v);
-    std::vector<std::uint64_t> key(solid.size());
-    parallel_for(solid.size(), 4096,
-                 [&](std::size_t v) { key[v] = counter_random(seed, RandomStream::kSamples, 0, v, 0); });
-    parallel_for(order.size(), 1, [&](std::size_t c) {
-        std::ranges::sort(order[c],
-                          [&](VoxelIndex a, VoxelIndex b) { return key[a] != key[b] ? key[a] < key[b] : a < b; });
-    });
+        if (solid[v] == SolidState::kSolid) cards[shell_components.of[v]].emplace_back(0, v);
+    std::vector<std::vector<VoxelIndex>> order(cards.size());
+    for (std::size_t c = 0; c < cards.size(); ++c) {
+        std::vector<Card>& pack = cards[c];
+        parallel_for(pack.size(), 4096, [&](std::size_t i) {
+            pack[i].first = counter_random(seed, RandomStream::kSamples, 0, pack[i].second, 0);
+        });
+        std::ranges::sort(pack);
+        for (const Card& card : pack) order[c].push_back(card.second);
+    }
     return order;
 }
 

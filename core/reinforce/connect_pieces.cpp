@@ -53,10 +53,12 @@ ConnectedPieces connect_pieces(const SurfaceVoxels& shell, const Adjacency& firm
                                const ShellComponents& shell_components, BridgePainter& painter, DilatedPart part,
                                SolidStates& solid, const RunControl& run) {
     ConnectedPieces result;
-    for (int attempt = 0; attempt < 2; ++attempt) {
+    constexpr int kAttempts = 2;
+    for (int attempt = 0;; ++attempt) {
         const ShellComponents pieces = connected_components(firm, solid, SolidState::kSolid);
         run.throw_if_stopped();
-        if (nothing_to_join(pieces, shell_components)) break;
+        result.pieces = pieces.count();
+        if (attempt == kAttempts || nothing_to_join(pieces, shell_components)) break;
         // The second time every path follows firm links, so that its voxels alone make the connection.
         const bool along_firm_links = attempt > 0;
         const auto paths = spanning_gaps(along_firm_links ? firm : shell.adjacency, pieces, solid);

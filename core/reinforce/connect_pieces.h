@@ -15,6 +15,7 @@ struct ConnectedPieces {
     std::vector<VoxelIndex> covered;  ///< all voxels of the bridges and repaired contacts, ascending, without repeats
     std::size_t bridges = 0;          ///< over empty voxels
     std::size_t contacts = 0;         ///< pieces that met in an edge or a corner and now share faces
+    std::size_t pieces = 0;           ///< firm pieces that there are now
 };
 
 /// Joins all solid pieces of each component of the shell into one, over firm links. Pieces are grown

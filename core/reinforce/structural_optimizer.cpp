@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/graph/firm_links.h"
 #include "core/reinforce/connect_pieces.h"
 #include "core/reinforce/drop_specks.h"
@@ -125,13 +126,14 @@ struct StructuralOptimizer::Impl {
     void reinforce_as_printed(SolidStates& state, Outcome& outcome, const RunControl& run);
     void reinforce(SolidStates& state, Outcome& outcome, const RunControl& run);
     void take_stock(SolidStates& state, Outcome& outcome, const RunControl& run);
-    void commit(const SolidStates& before, const SolidStates& after, const Outcome& outcome, ReinforceStep& step);
+    void commit(const SolidStates& before, const Outcome& outcome, ReinforceStep& step);
 };
 
 /// What one turn has found out so far.
 struct StructuralOptimizer::Impl::Outcome {
     ReinforceRecord record;
     std::vector<VoxelIndex> covered;  ///< voxels to be forced, with repeats
+    std::size_t pieces = 0;           ///< firm ones, after connecting
     bool asks_for_resynthesis = false;
     double frozen_median_pa = -1.0;
     std::size_t voxels_left = 0;
@@ -168,6 +170,7 @@ void StructuralOptimizer::Impl::connect_and_seed(SolidStates& state, Outcome& ou
     const ConnectedPieces connected = connect_pieces(shell, firm, shell_components, painter, part, state, run);
     outcome.covered.insert(outcome.covered.end(), seeds.begin(), seeds.end());
     outcome.covered.insert(outcome.covered.end(), connected.covered.begin(), connected.covered.end());
+    outcome.pieces = connected.pieces;
     outcome.record.bridges_connect += connected.bridges;
     outcome.asks_for_resynthesis = outcome.asks_for_resynthesis || !seeds.empty() || connected.bridges > 0;
 }
@@ -233,8 +236,7 @@ void StructuralOptimizer::Impl::take_stock(SolidStates& state, Outcome& outcome,
     merge_record(turn.record(), outcome.record);
 }
 
-void StructuralOptimizer::Impl::commit(const SolidStates& before, const SolidStates& after, const Outcome& outcome,
-                                       ReinforceStep& step) {
+void StructuralOptimizer::Impl::commit(const SolidStates& before, const Outcome& outcome, ReinforceStep& step) {
     step.record = outcome.record;
     for (const VoxelIndex v : outcome.covered) {
         if (forced[v] != 0) continue;
@@ -244,7 +246,7 @@ void StructuralOptimizer::Impl::commit(const SolidStates& before, const SolidSta
         step.record.voxels_added += before[v] == SolidState::kEmpty ? 1u : 0u;
     }
     std::ranges::sort(step.forced_solid);
-    step.record.connected = connected_components(firm, after, SolidState::kSolid).count() == shell_components.count();
+    step.record.connected = outcome.pieces == shell_components.count();
     iteration = outcome.record.iteration;
     frozen_median_pa = outcome.frozen_median_pa;
     voxels_left = outcome.voxels_left;
@@ -285,12 +287,18 @@ ReinforceStep StructuralOptimizer::step(const SolidStates& solid, const RunContr
     outcome.record.allowable_pa = self.allowable_pa();
 
     SolidStates state = self.with_forced(solid);
-    outcome.record.components_before = connected_components(self.shell.adjacency, state, SolidState::kSolid).count();
-    if (!printed) {
-        DroppedSpecks specks = self.drop(state);
-        result.dropped = std::move(specks.voxels);
-        outcome.record.specks_dropped = specks.pieces;
-    }
+    DroppedSpecks specks;
+    SolidStates without_specks = state;
+    parallel_for(2, 1, [&](std::size_t task) {
+        if (task == 0)
+            outcome.record.components_before =
+                connected_components(self.shell.adjacency, state, SolidState::kSolid).count();
+        else if (!printed)
+            specks = self.drop(without_specks);
+    });
+    state = std::move(without_specks);
+    result.dropped = std::move(specks.voxels);
+    outcome.record.specks_dropped = specks.pieces;
     if (!printed || last) self.connect_and_seed(state, outcome, run);
     if (last)
         self.take_stock(state, outcome, run);
@@ -309,7 +317,7 @@ ReinforceStep StructuralOptimizer::step(const SolidStates& solid, const RunContr
     std::erase_if(result.dropped, [&](VoxelIndex v) { return state[v] == SolidState::kSolid; });
     run.checkpoint("structure", 1.0);
 
-    self.commit(solid, state, outcome, result);
+    self.commit(solid, outcome, result);
     return result;
 }
 
