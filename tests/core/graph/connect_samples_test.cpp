@@ -22,6 +22,7 @@ using testing::blobs;
 using testing::make_icosphere;
 using testing::make_linked_tori;
 using testing::make_square;
+using testing::make_torus;
 using testing::stripes;
 
 struct Sampled {
@@ -232,6 +233,26 @@ TEST_CASE("pattern_half_width: is that of stripes", "[graph]") {
     }
     CHECK(pattern_half_width(shell.adjacency, SolidStates(shell.size(), SolidState::kSolid), 20.0) ==
           std::vector<float>(shell.size(), 20.0f));
+}
+
+TEST_CASE("pattern_half_width: nowhere under the distance to the nearest empty voxel, and reached somewhere",
+          "[graph]") {
+    const SurfaceVoxels shell = voxelize(make_torus(20.0, 8.0, 48, 24), {.resolution = 48});
+    const auto seed = GENERATE(range(1u, 4u));
+    const SolidStates solid = blobs(shell, 12.0, seed);
+    std::vector<VoxelIndex> empty;
+    for (VoxelIndex v = 0; v < shell.size(); ++v)
+        if (solid[v] == SolidState::kEmpty) empty.push_back(v);
+    const ShortestPathForest from_empty = shortest_path_forest(shell.adjacency, empty);
+    const std::vector<float> half = pattern_half_width(shell.adjacency, solid, 1000.0);
+    float deepest = 0.0f;
+    for (std::size_t v = 0; v < shell.size(); ++v) {
+        const float depth =
+            solid[v] == SolidState::kEmpty ? 0.0f : static_cast<float>(to_voxels(from_empty.distance[v]) - 0.5);
+        REQUIRE(half[v] >= depth);
+        deepest = std::max(deepest, depth);
+    }
+    CHECK(std::ranges::max(half) == deepest);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/graph/firm_links.h"
+#include "core/reinforce/connect_pieces.h"
 #include "core/reinforce/pattern_pieces.h"
 #include "core/shell/voxelize.h"
 #include "support/carved_shells.h"
@@ -167,7 +169,7 @@ TEST_CASE("structural optimizer: a full shell needs nothing", "[reinforce]") {
 TEST_CASE("structural optimizer: keeps to the material budget", "[reinforce]") {
     const SurfaceVoxels shell = voxelize(make_cylinder(10.0, 60.0, 48, 16), {.resolution = 60});
     // Loads far beyond the material: bridges are wanted without end.
-    ForceProfile profile{handling_cases(shell, 5000.0)};
+    const ForceProfile profile{handling_cases(shell, 120.0)};
     const SolidStates solid = stripes(shell, 10.0, Vec3(1, 0, 0));
     std::size_t only_connected = 0;
     for (const double budget : {0.0, 0.02, 0.08}) {
@@ -190,7 +192,7 @@ TEST_CASE("structural optimizer: keeps to the material budget", "[reinforce]") {
 
 TEST_CASE("structural optimizer: the stress of a striped cylinder falls", "[reinforce]") {
     const SurfaceVoxels shell = voxelize(make_cylinder(10.0, 60.0, 48, 16), {.resolution = 72});
-    ForceProfile profile{handling_cases(shell, 30.0)};
+    const ForceProfile profile{handling_cases(shell, 120.0)};
     ReinforceSettings settings = small_settings(ReinforceRules::kDefault);
     settings.samples = 200;
     settings.max_iterations = 20;
@@ -252,6 +254,44 @@ TEST_CASE("structural optimizer: the geodesic criterion shortens long ways round
         CHECK(run.records.front().bridges_geodesic > 0);
         CHECK(run.records.back().max_geodesic <= factor * 1.05);
     }
+}
+
+TEST_CASE("structural optimizer: long ways round are bridged in the first turn, whatever the stress", "[reinforce]") {
+    const SurfaceVoxels shell = voxelize(make_cylinder(12.0, 60.0, 48, 16), {.resolution = 64});
+    const ForceProfile profile{handling_cases(shell, 120.0)};
+    ReinforceSettings settings = small_settings(ReinforceRules::kDefault);
+    settings.samples = 200;
+    settings.geodesic_factor = 0.3;
+    settings.material_budget = 1.0;
+    SolidStates solid = stripes(shell, 12.0, Vec3(0, 0, 1));
+    for (VoxelIndex v = 0; v < shell.size(); ++v)
+        if (shell.points_mm[v][0] > 10.0) solid[v] = SolidState::kSolid;
+    StructuralOptimizer optimizer(shell, profile, material_by_name("PLA"), settings);
+    const ReinforceRecord first = optimizer.step(solid).record;
+    CHECK(first.max_score_pa > 5.0 * first.allowable_pa);
+    CHECK(first.bridges_stress > 0);
+    CHECK(first.bridges_geodesic > 0);
+}
+
+TEST_CASE("connect_pieces: joins what there is, counts right, and has nothing to do a second time", "[reinforce]") {
+    const auto seed = GENERATE(range(1u, 4u));
+    const SurfaceVoxels shell = voxelize(make_linked_tori(20.0, 6.0), {.resolution = 40});
+    const Adjacency firm = firm_links(shell.adjacency);
+    const ShellComponents components = connected_components(shell.adjacency);
+    REQUIRE(components.count() == 2);
+    BridgePainter painter(shell, firm, 2.0);
+    SolidStates solid = blobs(shell, 10.0, seed);
+    const std::size_t before = connected_components(firm, solid, SolidState::kSolid).count();
+    REQUIRE(before > components.count());
+    const ConnectedPieces joined = connect_pieces(shell, firm, components, painter, DilatedPart::kGap, solid);
+    CHECK(joined.bridges + joined.contacts >= before - components.count());
+    CHECK(joined.pieces == components.count());
+    CHECK(connected_components(firm, solid, SolidState::kSolid).count() == components.count());
+    const SolidStates once = solid;
+    const ConnectedPieces again = connect_pieces(shell, firm, components, painter, DilatedPart::kGap, solid);
+    CHECK(again.covered.empty());
+    CHECK(again.pieces == components.count());
+    CHECK(solid == once);
 }
 
 TEST_CASE("structural optimizer: drops specks but never what the user keeps", "[reinforce]") {
