@@ -36,6 +36,7 @@ DroppedSpecks drop_specks(const Adjacency& firm, const ShellComponents& shell_co
         dropped[p] = 1;
         ++result.pieces;
     }
+    result.pieces_left = pieces.count() - result.pieces;
     for (VoxelIndex v = 0; v < solid.size(); ++v) {
         if (pieces.of[v] == kNoComponent || dropped[pieces.of[v]] == 0) continue;
         solid[v] = SolidState::kEmpty;

@@ -20,6 +20,7 @@ struct SpeckRules {
 struct DroppedSpecks {
     std::vector<VoxelIndex> voxels;  ///< made empty, ascending
     std::size_t pieces = 0;
+    std::size_t pieces_left = 0;
 };
 
 /// Empties the specks of each component of the shell. The largest piece of a component always stays, and

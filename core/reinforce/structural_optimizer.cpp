@@ -121,6 +121,7 @@ struct StructuralOptimizer::Impl {
     [[nodiscard]] double limit_pa(double median_pa) const;
     [[nodiscard]] SolidStates with_forced(const SolidStates& solid) const;
     DroppedSpecks drop(SolidStates& state) const;
+    [[nodiscard]] bool every_component_has_solid(const SolidStates& state) const;
     struct Outcome;
     void connect_and_seed(SolidStates& state, Outcome& outcome, const RunControl& run);
     void reinforce_as_printed(SolidStates& state, Outcome& outcome, const RunControl& run);
@@ -161,6 +162,13 @@ DroppedSpecks StructuralOptimizer::Impl::drop(SolidStates& state) const {
     SpeckRules rules;
     rules.least_voxels = static_cast<std::size_t>(std::numbers::pi * radius * radius);
     return drop_specks(firm, shell_components, keep, rules, state);
+}
+
+bool StructuralOptimizer::Impl::every_component_has_solid(const SolidStates& state) const {
+    std::vector<std::uint8_t> has_solid(shell_components.count(), 0);
+    for (std::size_t v = 0; v < state.size(); ++v)
+        if (state[v] == SolidState::kSolid) has_solid[shell_components.of[v]] = 1;
+    return std::ranges::count(has_solid, std::uint8_t{0}) == 0;
 }
 
 void StructuralOptimizer::Impl::connect_and_seed(SolidStates& state, Outcome& outcome, const RunControl& run) {
@@ -299,7 +307,10 @@ ReinforceStep StructuralOptimizer::step(const SolidStates& solid, const RunContr
     state = std::move(without_specks);
     result.dropped = std::move(specks.voxels);
     outcome.record.specks_dropped = specks.pieces;
-    if (!printed || last) self.connect_and_seed(state, outcome, run);
+    // A component that has a piece keeps one.
+    const bool one_piece_each =
+        !printed && specks.pieces_left == self.shell_components.count() && self.every_component_has_solid(state);
+    if (last || !(printed || one_piece_each)) self.connect_and_seed(state, outcome, run);
     if (last)
         self.take_stock(state, outcome, run);
     else if (printed)
