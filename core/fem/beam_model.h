@@ -30,8 +30,8 @@ class BeamModel {
     /// \throws InvalidSetting  material out of range (`solid_elements.h`).
     /// \throws SolverFailure   no memory.
     BeamModel(const SurfaceVoxels& shell, const SolidStates& solid, const AbstractGraph& graph,
-              std::vector<float> half_width_voxels, const ForceProfile& profile, const Material& material, const BeamModelSettings& settings,
-              const RunControl& run = {});
+              std::vector<float> half_width_voxels, const ForceProfile& profile, const Material& material,
+              const BeamModelSettings& settings, const RunControl& run = {});
     ~BeamModel();
     BeamModel(BeamModel&&) noexcept;
     BeamModel& operator=(BeamModel&&) noexcept;

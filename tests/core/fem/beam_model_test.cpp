@@ -279,7 +279,8 @@ TEST_CASE("beam model: a strip in tension feels force over area", "[fem]") {
     }
     pull.loads.push_back(patch);
     ForceProfile profile{{pull}};
-    BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), profile, material_by_name("PLA"), {});
+    BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), profile, material_by_name("PLA"),
+                    {});
     const std::vector<double> scores = model.edge_scores_pa(states_of(c.graph));
     std::vector<double> along;
     for (EdgeIndex e = 0; e < scores.size(); ++e) {
@@ -302,7 +303,8 @@ TEST_CASE("beam model: scores follow the load, and self-weight does not know You
     const auto scores = [&](double g, const Material& material) {
         LoadCase load_case = gravity_case(c.shell, -Vec3::UnitZ());
         load_case.acceleration_g *= g;
-        BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), ForceProfile{{load_case}}, material, {});
+        BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), ForceProfile{{load_case}},
+                        material, {});
         return model.edge_scores_pa(states);
     };
     const std::vector<double> once = scores(1.0, pla);
@@ -332,7 +334,8 @@ TEST_CASE("beam model: score is the maximum over load cases, however they are gr
     all.cases.push_back(other);
     std::vector<double> expected(c.graph.edges.size(), 0.0);
     for (const LoadCase& load_case : all.cases) {
-        BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), ForceProfile{{load_case}}, pla, {});
+        BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), ForceProfile{{load_case}}, pla,
+                        {});
         const std::vector<double> scores = model.edge_scores_pa(states);
         for (std::size_t e = 0; e < scores.size(); ++e) expected[e] = std::max(expected[e], scores[e]);
     }
@@ -344,7 +347,8 @@ TEST_CASE("beam model: score is the maximum over load cases, however they are gr
 TEST_CASE("beam model: solving again gives the same, and stiffer edges relieve the soft ones", "[fem]") {
     const Case c = blob_case(make_icosphere(20.0, 4), 40, 4, 80);
     std::vector<EdgeState> states = states_of(c.graph);
-    BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), ForceProfile{handling_cases(c.shell)}, material_by_name("PLA"), {});
+    BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid),
+                    ForceProfile{handling_cases(c.shell)}, material_by_name("PLA"), {});
     const std::vector<double> before = model.edge_scores_pa(states);
     CHECK(model.edge_scores_pa(states) == before);
     const auto worst_empty = [&](const std::vector<double>& scores) {
@@ -363,7 +367,8 @@ TEST_CASE("beam model: the same bits on any number of threads", "[fem][determini
     std::vector<double> reference;
     for (const int threads : {1, 2, 4}) {
         const ThreadLimit limit(threads);
-        BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), ForceProfile{handling_cases(c.shell)}, material_by_name("PLA"), {});
+        BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid),
+                        ForceProfile{handling_cases(c.shell)}, material_by_name("PLA"), {});
         const std::vector<double> scores = model.edge_scores_pa(states);
         if (threads == 1) reference = scores;
         CHECK(scores == reference);
@@ -375,10 +380,13 @@ TEST_CASE("beam model: stops when asked", "[fem]") {
     std::stop_source source;
     const RunControl run(nullptr, source.get_token());
     const ForceProfile profile{handling_cases(c.shell)};
-    BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), profile, material_by_name("PLA"), {}, run);
+    BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), profile, material_by_name("PLA"), {},
+                    run);
     source.request_stop();
     CHECK_THROWS_AS(model.edge_scores_pa(states_of(c.graph), run), Cancelled);
-    CHECK_THROWS_AS(BeamModel(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), profile, material_by_name("PLA"), {}, run), Cancelled);
+    CHECK_THROWS_AS(BeamModel(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), profile,
+                              material_by_name("PLA"), {}, run),
+                    Cancelled);
 }
 
 }  // namespace
