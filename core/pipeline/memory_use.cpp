@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -13,10 +14,14 @@
 namespace fretwork {
 namespace {
 
-// Bytes per surface voxel at the peak: pyramid and neighbourhoods, labels, graphs, and the lattice of the
-// surfacing, which grows with the wall. Runs of 64 to 256 voxels used 60 to 90 % of what these give.
-constexpr double kBytesPerVoxel = 3500.0;
-constexpr double kBytesPerVoxelOfWall = 700.0;
+// The surfacing is the peak of most runs: labels, graphs, and the lattice, which grows a little with the wall.
+constexpr double kBytesPerVoxel = 4700.0;
+constexpr double kBytesPerVoxelOfWall = 100.0;
+constexpr double kGrowth = 0.95;  // fitted power of the voxels, and where it makes no difference
+constexpr double kGrowthPivot = 126000.0;
+// On small shells it is the loop: equations of the samples, in memory that the threads keep.
+constexpr double kLoopBytesPerSample = 160e3;
+constexpr double kLoopBytesPerVoxel = 1500.0;
 constexpr double kBytesPerTriangle = 700.0;  // input mesh, its box trees and its repair
 constexpr double kBytesFixed = 90e6;
 constexpr double kVoxelsPerArea = 1.6;  // a plane at any tilt meets 1 to 1.7 cells per cell face
@@ -30,17 +35,19 @@ double area_mm2(const TriangleMesh& mesh) {
     return area;
 }
 
-double bytes_at(double area, double triangles, double voxel_mm, double thickness_mm) {
+double bytes_at(double area, double triangles, double voxel_mm, const ResolvedSettings& settings) {
     const double voxels = kVoxelsPerArea * area / (voxel_mm * voxel_mm);
-    return kBytesFixed + kBytesPerTriangle * triangles +
-           voxels * (kBytesPerVoxel + kBytesPerVoxelOfWall * thickness_mm / voxel_mm);
+    const double per_voxel = kBytesPerVoxel + kBytesPerVoxelOfWall * settings.solidify.thickness_mm / voxel_mm;
+    const double surfacing = per_voxel * voxels * std::pow(voxels / kGrowthPivot, kGrowth - 1.0);
+    const double loop = kLoopBytesPerSample * settings.reinforce.samples + kLoopBytesPerVoxel * voxels;
+    return kBytesFixed + kBytesPerTriangle * triangles + std::max(surfacing, loop);
 }
 
 }  // namespace
 
 std::uint64_t estimated_peak_bytes(const TriangleMesh& mesh, const ResolvedSettings& settings) {
-    return static_cast<std::uint64_t>(bytes_at(area_mm2(mesh), static_cast<double>(mesh.triangles.size()),
-                                               settings.voxel_mm, settings.solidify.thickness_mm));
+    return static_cast<std::uint64_t>(
+        bytes_at(area_mm2(mesh), static_cast<double>(mesh.triangles.size()), settings.voxel_mm, settings));
 }
 
 std::uint64_t peak_memory_bytes() {
@@ -61,7 +68,7 @@ void check_memory(const TriangleMesh& mesh, const ResolvedSettings& settings, st
     const double area = area_mm2(mesh);
     int fitting = settings.voxelize.resolution;
     while (fitting > 8 && bytes_at(area, static_cast<double>(mesh.triangles.size()), settings.longest_side_mm / fitting,
-                                   settings.solidify.thickness_mm) > static_cast<double>(max_bytes))
+                                   settings) > static_cast<double>(max_bytes))
         fitting = fitting * 7 / 8;
     throw MemoryLimit(fmt::format(
         "shell.resolution = {} needs about {:.0f} MB, and --max-memory allows {:.0f} MB; use shell.resolution = {}",

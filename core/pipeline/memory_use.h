@@ -9,7 +9,7 @@
 
 namespace fretwork {
 
-/// Upper estimate of the peak of a run, from the area of the surface alone; within a factor of two.
+/// Upper estimate of the peak of a run, from the area of the surface alone; at most half too much on the models it was fitted to.
 /// \param mesh  scaled
 std::uint64_t estimated_peak_bytes(const TriangleMesh& mesh, const ResolvedSettings& settings);
 

@@ -27,7 +27,6 @@ using testing::make_cylinder;
 using testing::make_icosphere;
 using testing::make_linked_tori;
 using testing::make_square;
-using testing::stripes;
 
 struct Case {
     SurfaceVoxels shell;

@@ -23,7 +23,6 @@ using testing::make_icosphere;
 using testing::make_linked_tori;
 using testing::make_square;
 using testing::make_torus;
-using testing::stripes;
 
 struct Sampled {
     SurfaceVoxels shell;

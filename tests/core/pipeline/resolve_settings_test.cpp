@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <regex>
 
 #include "core/base/error.h"
@@ -181,6 +182,25 @@ TEST_CASE("memory: the estimate grows with resolution, and a limit names what fi
     advised.voxel_mm = advised.longest_side_mm / advised.voxelize.resolution;
     CHECK(advised.voxelize.resolution >= 64);
     CHECK_NOTHROW(check_memory(box, advised, limit));
+}
+
+TEST_CASE("memory: the estimate is above what runs have used, and not far above", "[pipeline]") {
+    // Peaks of a bunny of 100 mm, the least and the most of plain and colourful patterns; a box with as much surface.
+    struct Measured {
+        const char* resolution;
+        double least_mb, most_mb;
+    };
+    const double side = std::sqrt(23900.0 / 6.0);
+    const TriangleMesh box = testing::make_box(Vec3(0, 0, 0), Vec3(side, side, side));
+    for (const Measured& run :
+         {Measured{"shell.resolution=64", 238, 260}, Measured{"shell.resolution=128", 303, 368},
+          Measured{"shell.resolution=256", 1014, 1340}, Measured{"shell.resolution=512", 3926, 3926}}) {
+        CAPTURE(run.resolution);
+        const ResolvedSettings settings = resolve({run.resolution});
+        const double estimate = 1e-6 * static_cast<double>(estimated_peak_bytes(box, settings));
+        CHECK(estimate >= run.most_mb);
+        CHECK(estimate <= 1.4 * run.least_mb);
+    }
 }
 
 }  // namespace
