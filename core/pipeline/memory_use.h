@@ -9,8 +9,8 @@
 
 namespace fretwork {
 
-/// Upper estimate of the peak of a run, from the area of the surface alone; at most half too much on the models it was fitted to.
-/// \param mesh  scaled
+/// Upper estimate of the peak of a run, from the area of the surface alone; at most half too much on the models it was
+/// fitted to. \param mesh  scaled
 std::uint64_t estimated_peak_bytes(const TriangleMesh& mesh, const ResolvedSettings& settings);
 
 /// Largest resident set of this process so far (VmHWM); 0 where the system does not tell.
