@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/shell/cell_rows.h"
@@ -26,88 +27,104 @@ struct CoarseLayer {
     std::vector<VoxelIndex> children;
 };
 
-// Groups the children in [begin, end), which are all those below one coarse layer.
+// Groups the children in two layers of the finer grid, which are all those below one coarse layer.
 class LayerGrouper {
   public:
-    LayerGrouper(const PyramidLevel& fine, VoxelIndex begin, VoxelIndex end) : fine_(fine), begin_(begin), end_(end) {}
+    // \param z  of the lower layer
+    LayerGrouper(const PyramidLevel& fine, const CellRows& rows, int z, VoxelIndex begin, VoxelIndex end)
+        : fine_(fine), rows_(rows), z_(z), begin_(begin), cell_of_(end - begin) {}
 
     CoarseLayer group() {
-        join_children();
-        sort_by_cell_and_group();
-        CoarseLayer layer;
-        for (std::size_t i = 0; i < order_.size(); ++i) {
-            const VoxelIndex child = begin_ + order_[i].child;
-            if (i == 0 || order_[i].cell != order_[i - 1].cell || order_[i].group != order_[i - 1].group) {
-                layer.coords.push_back(cell_above(fine_.coords[child]));
-                layer.first_child.push_back(static_cast<std::uint32_t>(i));
-            }
-            layer.children.push_back(child);
-        }
-        return layer;
+        layer_.children.reserve(cell_of_.size());
+        layer_.coords.reserve(cell_of_.size() / 2);
+        layer_.first_child.reserve(cell_of_.size() / 2);
+        for (int y = 0; y < rows_.extent()[1]; y += 2) group_row(y);
+        return std::move(layer_);
     }
 
   private:
+    // Cells of one coarse row, by going through the four rows below it at once. Children of a cell come out ascending.
+    void group_row(int y) {
+        std::array<CellRows::Row, 4> row = {rows_.row(y, z_), rows_.row(y + 1, z_), rows_.row(y, z_ + 1),
+                                            rows_.row(y + 1, z_ + 1)};
+        constexpr int none = std::numeric_limits<int>::max();
+        for (;;) {
+            int x = none;
+            for (const CellRows::Row& r : row)
+                if (r.begin < r.end) x = std::min(x, rows_.x_of(r.begin) >> 1);
+            if (x == none) return;
+            members_.clear();
+            for (CellRows::Row& r : row)
+                for (; r.begin < r.end && rows_.x_of(r.begin) >> 1 == x; ++r.begin) {
+                    members_.push_back({r.begin, r.begin});
+                    cell_of_[r.begin - begin_] = cells_;
+                }
+            add_cell({x, y >> 1, z_ >> 1});
+            ++cells_;
+        }
+    }
+
+    // Groups follow each other in the order of their lowest child.
+    void add_cell(const VoxelCoord& coord) {
+        if (members_.size() > 1 && join_members() > 1)
+            std::sort(members_.begin(), members_.end(), [](const Member& a, const Member& b) {
+                return a.group != b.group ? a.group < b.group : a.child < b.child;
+            });
+        for (std::size_t i = 0; i < members_.size(); ++i) {
+            if (i == 0 || members_[i].group != members_[i - 1].group) {
+                layer_.coords.push_back(coord);
+                layer_.first_child.push_back(static_cast<std::uint32_t>(layer_.children.size()));
+            }
+            layer_.children.push_back(members_[i].child);
+        }
+    }
+
     struct Member {
-        std::uint64_t cell;   // (y, x) of the coarse cell
-        std::uint32_t group;  // lowest child of the group, relative to begin_
-        std::uint32_t child;  // relative to begin_
+        VoxelIndex child;
+        VoxelIndex group;  // lowest child of the group
     };
 
-    std::uint32_t root(std::uint32_t child) {
-        while (group_[child] != child) {
-            group_[child] = group_[group_[child]];
-            child = group_[child];
-        }
-        return child;
-    }
-
-    void join_children() {
-        group_.resize(end_ - begin_);
-        for (std::uint32_t c = 0; c < group_.size(); ++c) group_[c] = c;
-        for (VoxelIndex v = begin_; v < end_; ++v) {
-            const VoxelCoord cell = cell_above(fine_.coords[v]);
-            for (const VoxelIndex w : fine_.adjacency.of(v)) {
-                if (w >= v) break;  // the link is met from its other end
-                if (w < begin_ || !same_cell(cell_above(fine_.coords[w]), cell)) continue;
-                const std::uint32_t a = root(v - begin_);
-                const std::uint32_t b = root(w - begin_);
-                group_[std::max(a, b)] = std::min(a, b);
+    // Joins what is linked inside the cell; returns the number of groups.
+    std::size_t join_members() {
+        std::size_t groups = members_.size();
+        for (const Member& m : members_) {
+            for (const VoxelIndex w : fine_.adjacency.of(m.child)) {
+                if (w >= m.child || groups == 1) break;  // later links are met from their other end
+                if (w < members_.front().child || cell_of_[w - begin_] != cells_) continue;
+                const VoxelIndex a = group_of(m.child), b = group_of(w);
+                if (a == b) continue;
+                for (Member& other : members_)
+                    if (other.group == std::max(a, b)) other.group = std::min(a, b);
+                --groups;
             }
         }
+        return groups;
     }
 
-    void sort_by_cell_and_group() {
-        order_.reserve(group_.size());
-        for (std::uint32_t c = 0; c < group_.size(); ++c) {
-            const VoxelCoord cell = cell_above(fine_.coords[begin_ + c]);
-            order_.push_back(
-                {static_cast<std::uint64_t>(cell[1]) << 32 | static_cast<std::uint32_t>(cell[0]), root(c), c});
-        }
-        std::sort(order_.begin(), order_.end(), [](const Member& a, const Member& b) {
-            if (a.cell != b.cell) return a.cell < b.cell;
-            return a.group != b.group ? a.group < b.group : a.child < b.child;
-        });
+    [[nodiscard]] VoxelIndex group_of(VoxelIndex child) const {
+        const auto at = std::lower_bound(members_.begin(), members_.end(), child,
+                                         [](const Member& m, VoxelIndex value) { return m.child < value; });
+        return at->group;
     }
 
     const PyramidLevel& fine_;
+    const CellRows& rows_;
+    int z_;
     VoxelIndex begin_;
-    VoxelIndex end_;
-    std::vector<std::uint32_t> group_;
-    std::vector<Member> order_;
+    std::vector<std::uint32_t> cell_of_;  // cell of each child met so far, by a running number
+    std::uint32_t cells_ = 1;
+    std::vector<Member> members_;
+    CoarseLayer layer_;
 };
 
-std::vector<CoarseLayer> group_layers(const PyramidLevel& fine, const RunControl& run) {
+std::vector<CoarseLayer> group_layers(const PyramidLevel& fine, const CellRows& rows, const RunControl& run) {
     const int layers = cell_above(fine.coords.back())[2] + 1;
     std::vector<CoarseLayer> result(static_cast<std::size_t>(layers));
-    const auto first_in_layer = [&](int z) {
-        const auto at = std::lower_bound(fine.coords.begin(), fine.coords.end(), z,
-                                         [](const VoxelCoord& c, int value) { return c[2] < value; });
-        return static_cast<VoxelIndex>(at - fine.coords.begin());
-    };
     parallel_for(result.size(), 1, [&](std::size_t z) {
         run.throw_if_stopped();
         const int fine_z = 2 * static_cast<int>(z);
-        result[z] = LayerGrouper(fine, first_in_layer(fine_z), first_in_layer(fine_z + 2)).group();
+        const VoxelIndex begin = rows.layer_begin(fine_z), end = rows.layer_begin(fine_z + 2);
+        result[z] = LayerGrouper(fine, rows, fine_z, begin, end).group();
     });
     return result;
 }
@@ -170,61 +187,32 @@ void average_children(const WeightedLevel& fine, WeightedLevel& coarse, float vo
     });
 }
 
-float length_between(const VoxelCoord& a, const VoxelCoord& b) {
-    constexpr std::array<float, 4> length = {0.0F, 1.0F, 1.41421356F, 1.73205081F};
-    return length[static_cast<std::size_t>((a[0] != b[0]) + (a[1] != b[1]) + (a[2] != b[2]))];
-}
-
-// The parents that children of p are linked to, ascending. A cell tells the parent as long as none holds two of them.
-void list_linked_parents(const PyramidLevel& fine, const PyramidLevel& coarse, VoxelIndex p,
-                         std::vector<VoxelIndex>& row) {
-    std::array<VoxelIndex, 27> in_cell;
-    CellSet seen = 0;
-    bool several = false;
-    row.clear();
-    for (std::uint32_t i = coarse.first_child[p]; i < coarse.first_child[p + 1]; ++i)
-        for (const VoxelIndex w : fine.adjacency.of(coarse.children[i])) {
-            const VoxelIndex q = fine.parent[w];
-            if (q == p) continue;
-            const auto code = static_cast<std::size_t>(touching_code(coarse.coords[p], coarse.coords[q]));
-            if ((seen >> code & 1u) != 0 && in_cell[code] != q) {
-                several = true;
-                row.push_back(q);
-            } else {
-                seen |= CellSet{1} << code;
-                in_cell[code] = q;
-            }
-        }
-    for (; seen != 0; seen &= seen - 1) row.push_back(in_cell[static_cast<std::size_t>(std::countr_zero(seen))]);
-    if (!several) return;
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-}
-
-Adjacency link_parents(const PyramidLevel& fine, const PyramidLevel& coarse, const RunControl& run) {
+// Links between the parents of linked children.
+TouchingLinks link_parents(const PyramidLevel& fine, const PyramidLevel& coarse, const CellRows& rows,
+                           const RunControl& run) {
     std::vector<std::vector<VoxelIndex>> chunks((coarse.size() + kGrain - 1) / kGrain);
-    Adjacency links;
-    links.first.assign(coarse.size() + 1, 0);
+    TouchingLinks links(coarse.size());
     parallel_chunks(coarse.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         run.throw_if_stopped();
-        std::vector<VoxelIndex>& all = chunks[begin / kGrain];
+        std::vector<VoxelIndex>& listed = chunks[begin / kGrain];
         std::vector<VoxelIndex> row;
-        for (std::size_t p = begin; p < end; ++p) {
-            list_linked_parents(fine, coarse, static_cast<VoxelIndex>(p), row);
-            all.insert(all.end(), row.begin(), row.end());
-            links.first[p + 1] = static_cast<std::uint32_t>(row.size());
+        for (auto p = static_cast<VoxelIndex>(begin); p < end; ++p) {
+            row.clear();
+            for (std::uint32_t i = coarse.first_child[p]; i < coarse.first_child[p + 1]; ++i)
+                for (const VoxelIndex w : fine.adjacency.of(coarse.children[i])) {
+                    const VoxelIndex q = fine.parent[w];
+                    if (q == p) continue;
+                    const CellSet cell = CellSet{1} << touching_code(coarse.coords[p], coarse.coords[q]);
+                    (rows.shares_cell(q) ? links.several : links.single)[p] |= cell;
+                    if (rows.shares_cell(q)) row.push_back(q);
+                }
+            std::sort(row.begin(), row.end());
+            const auto row_end = std::unique(row.begin(), row.end());
+            listed.insert(listed.end(), row.begin(), row_end);
+            links.first[p + 1] = static_cast<std::uint32_t>(row_end - row.begin());
         }
     });
-    for (std::size_t p = 0; p < coarse.size(); ++p) links.first[p + 1] += links.first[p];
-    links.neighbor.resize(links.first.back());
-    links.length_voxels.resize(links.first.back());
-    parallel_chunks(coarse.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        std::copy(chunks[begin / kGrain].begin(), chunks[begin / kGrain].end(),
-                  links.neighbor.begin() + links.first[begin]);
-        for (std::size_t p = begin; p < end; ++p)
-            for (std::uint32_t e = links.first[p]; e < links.first[p + 1]; ++e)
-                links.length_voxels[e] = length_between(coarse.coords[p], coarse.coords[links.neighbor[e]]);
-    });
+    links.take_lists(chunks);
     return links;
 }
 
@@ -232,12 +220,13 @@ Adjacency link_parents(const PyramidLevel& fine, const PyramidLevel& coarse, con
 
 WeightedLevel coarsen(WeightedLevel& fine, int level_index, const RunControl& run) {
     WeightedLevel coarse;
-    join_layers(group_layers(fine.level, run), fine.level, coarse.level);
+    const CellRows fine_rows(extent_of(fine.level.coords), fine.level.coords);
+    join_layers(group_layers(fine.level, fine_rows, run), fine.level, coarse.level);
     average_children(fine, coarse, std::ldexp(1.0F, level_index));
-    const Adjacency of_children = link_parents(fine.level, coarse.level, run);
     const CellRows rows(extent_of(coarse.level.coords), coarse.level.coords);
+    const TouchingLinks of_children = link_parents(fine.level, coarse.level, rows, run);
     coarse.level.adjacency =
-        link_around_common_neighbors(rows, coarse.level.coords, coarse.level.normals, of_children, run);
+        link_around_common_neighbors(TouchingEntries(rows, run), coarse.level.normals, of_children, run);
     return coarse;
 }
 

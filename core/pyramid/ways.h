@@ -2,8 +2,8 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
+#include "core/base/bulk_vector.h"
 #include "core/pyramid/voxel_pyramid.h"
 
 namespace fretwork {
@@ -27,7 +27,7 @@ class Ways {
 
   private:
     const PyramidLevel& level_;
-    std::vector<float> cosine_;
+    BulkVector<float> cosine_;
 };
 
 /// Lays flat, one by one, the ways that flat_ways.h leaves: those around creases.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/base/parallel.h"
+
 namespace fretwork {
 
 VoxelCoord extent_of(std::span<const VoxelCoord> coords) {
@@ -15,30 +17,29 @@ VoxelCoord extent_of(std::span<const VoxelCoord> coords) {
 CellRows::CellRows(const VoxelCoord& extent, std::span<const VoxelCoord> coords) : extent_(extent), coords_(coords) {
     const std::size_t rows = static_cast<std::size_t>(extent_[1]) * static_cast<std::size_t>(extent_[2]);
     row_first_.resize(rows + 1, 0);
-    x_.reserve(coords.size());
-    for (const VoxelCoord& c : coords) {
-        ++row_first_[static_cast<std::size_t>(c[2]) * static_cast<std::size_t>(extent_[1]) +
-                     static_cast<std::size_t>(c[1]) + 1];
-        x_.push_back(static_cast<std::int16_t>(c[0]));
-    }
-    for (std::size_t r = 0; r < rows; ++r) row_first_[r + 1] += row_first_[r];
+    x_.resize(coords.size());
+    shares_cell_.resize(coords.size());
+    if (coords.empty()) return;
+    // The first entry of a row starts it, and the empty rows before it.
+    parallel_for(coords.size(), 8192, [&](std::size_t v) {
+        x_[v] = static_cast<std::int16_t>(coords[v][0]);
+        shares_cell_[v] = (v > 0 && same_cell(coords[v - 1], coords[v])) ||
+                          (v + 1 < coords.size() && same_cell(coords[v + 1], coords[v]));
+        const std::size_t row = row_of(coords[v]);
+        for (std::size_t r = row; v > 0 && r > row_of(coords[v - 1]); --r)
+            row_first_[r] = static_cast<std::uint32_t>(v);
+    });
+    for (std::size_t r = row_of(coords.back()) + 1; r <= rows; ++r)
+        row_first_[r] = static_cast<std::uint32_t>(coords.size());
 }
 
-std::size_t CellRows::place_cursors(const VoxelCoord& c, int reach, std::span<Cursor> cursors) const {
-    const int n = 2 * reach + 1;
+std::size_t CellRows::place_cursors(const VoxelCoord& c, std::span<Cursor> cursors) const {
     std::size_t used = 0;
-    for (int dz = -reach; dz <= reach; ++dz) {
-        const int z = c[2] + dz;
-        if (z < 0 || z >= extent_[2]) continue;
-        for (int dy = -reach; dy <= reach; ++dy) {
-            const int y = c[1] + dy;
-            if (y < 0 || y >= extent_[1]) continue;
-            const std::size_t row =
-                static_cast<std::size_t>(z) * static_cast<std::size_t>(extent_[1]) + static_cast<std::size_t>(y);
-            if (row_first_[row] == row_first_[row + 1]) continue;
-            cursors[used++] = {row_first_[row], row_first_[row + 1], reach + n * (dy + reach) + n * n * (dz + reach)};
+    for (int dz = -1; dz <= 1; ++dz)
+        for (int dy = -1; dy <= 1; ++dy) {
+            const Row r = row(c[1] + dy, c[2] + dz);
+            if (r.begin != r.end) cursors[used++] = {r.begin, r.end, 1 + 3 * (dy + 1) + 9 * (dz + 1)};
         }
-    }
     return used;
 }
 

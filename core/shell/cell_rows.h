@@ -1,6 +1,7 @@
 // Finds what lies around an entry of a sorted shell without any search tree: by sliding along rows of cells.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -25,24 +26,32 @@ class CellRows {
     /// \param extent  cells along x, y, z; every coordinate lies in it
     CellRows(const VoxelCoord& extent, std::span<const VoxelCoord> coords);
 
-    /// Calls `visit(v, w, code)` for v ascending in [begin, end) and w != v ascending over the entries whose
-    /// cells are at most `Reach` away along each axis, the cell of v included. With n = 2 Reach + 1 and d = cell of
-    /// w minus cell of v, code = (d_x + Reach) + n (d_y + Reach) + n^2 (d_z + Reach).
-    /// Cost: n^2 rows per entry; what lies in a row is passed over once per row of entries.
-    template <int Reach, class Visit>
+    [[nodiscard]] std::size_t size() const { return coords_.size(); }
+    [[nodiscard]] const VoxelCoord& extent() const { return extent_; }
+    /// The first entry with this z or a larger one.
+    [[nodiscard]] VoxelIndex layer_begin(int z) const {
+        return row_first_[static_cast<std::size_t>(std::clamp(z, 0, extent_[2])) *
+                          static_cast<std::size_t>(extent_[1])];
+    }
+
+    /// Calls `visit(v, w, code)` for v ascending in [begin, end) and w ascending over the entries of the cells that
+    /// touch that of v. With d = cell of w minus cell of v, code = (d_x + 1) + 3 (d_y + 1) + 9 (d_z + 1).
+    /// Cost: nine rows per entry; what lies in a row is passed over once per row of entries.
+    template <class Visit>
     void sweep(std::size_t begin, std::size_t end, const Visit& visit) const {
-        std::array<Cursor, (2 * Reach + 1) * (2 * Reach + 1)> cursors;
+        constexpr int own_cell = 13;
+        std::array<Cursor, 9> cursors;
         std::size_t used = 0;
         for (std::size_t v = begin; v < end; ++v) {
             const VoxelCoord& c = coords_[v];
-            if (v == begin || c[1] != coords_[v - 1][1] || c[2] != coords_[v - 1][2])
-                used = place_cursors(c, Reach, cursors);
+            if (v == begin || c[1] != coords_[v - 1][1] || c[2] != coords_[v - 1][2]) used = place_cursors(c, cursors);
             const int x = c[0];
             for (std::size_t k = 0; k < used; ++k) {
                 Cursor& cursor = cursors[k];
-                while (cursor.at < cursor.end && x_[cursor.at] < x - Reach) ++cursor.at;
-                for (std::uint32_t w = cursor.at; w < cursor.end && x_[w] <= x + Reach; ++w)
-                    if (w != v) visit(static_cast<VoxelIndex>(v), w, cursor.code + x_[w] - x);
+                while (cursor.at < cursor.end && x_[cursor.at] < x - 1) ++cursor.at;
+                for (std::uint32_t w = cursor.at; w < cursor.end && x_[w] <= x + 1; ++w)
+                    if (const int code = cursor.code + x_[w] - x; code != own_cell)
+                        visit(static_cast<VoxelIndex>(v), w, code);
             }
         }
     }
@@ -62,10 +71,7 @@ class CellRows {
     [[nodiscard]] int x_of(VoxelIndex v) const { return x_[v]; }
 
     /// Is the cell of `v` listed more than once?
-    [[nodiscard]] bool shares_cell(VoxelIndex v) const {
-        return (v > 0 && same_cell(coords_[v - 1], coords_[v])) ||
-               (v + 1 < coords_.size() && same_cell(coords_[v + 1], coords_[v]));
-    }
+    [[nodiscard]] bool shares_cell(VoxelIndex v) const { return shares_cell_[v] != 0; }
 
   private:
     struct Cursor {
@@ -74,16 +80,20 @@ class CellRows {
         int code;  ///< of the cell in this row with the x of v
     };
 
+    [[nodiscard]] std::size_t row_of(const VoxelCoord& c) const {
+        return static_cast<std::size_t>(c[2]) * static_cast<std::size_t>(extent_[1]) + static_cast<std::size_t>(c[1]);
+    }
     /// Cursors at the start of the rows around `c` that hold anything; returns their number.
-    std::size_t place_cursors(const VoxelCoord& c, int reach, std::span<Cursor> cursors) const;
+    std::size_t place_cursors(const VoxelCoord& c, std::span<Cursor> cursors) const;
 
     VoxelCoord extent_;
     std::span<const VoxelCoord> coords_;
     std::vector<std::int16_t> x_;
+    std::vector<std::uint8_t> shares_cell_;
     std::vector<std::uint32_t> row_first_;
 };
 
-/// A set of the 26 cells around a cell, one bit for each by the code of `CellRows::sweep<1>`.
+/// A set of the 26 cells around a cell, one bit for each by the code of `CellRows::sweep`.
 using CellSet = std::uint32_t;
 
 /// Answers whether the cell sets of two cells up to two apart have a cell in common.
@@ -91,7 +101,7 @@ class CellSetOverlap {
   public:
     CellSetOverlap();
 
-    /// \param code  of the second cell seen from the first, by `CellRows::sweep<2>`
+    /// \param code  of the second cell seen from the first, by `widened_code`
     /// \return the cells of `first` that are also in `second`, as a set around the first cell
     [[nodiscard]] CellSet common(CellSet first, CellSet second, int code) const {
         const Shift& s = shifts_[static_cast<std::size_t>(code)];
@@ -107,12 +117,17 @@ class CellSetOverlap {
     std::array<Shift, 125> shifts_;
 };
 
-/// Code of a touching cell by `CellRows::sweep<1>`.
+/// Code of a touching cell by `CellRows::sweep`.
 [[nodiscard]] inline int touching_code(const VoxelCoord& from, const VoxelCoord& to) {
     return (to[0] - from[0] + 1) + 3 * (to[1] - from[1] + 1) + 9 * (to[2] - from[2] + 1);
 }
 
-/// The same cell by the code of `CellRows::sweep<2>`.
+/// Code of this cell, seen from the other one.
+[[nodiscard]] inline int opposite_code(int touching) {
+    return 26 - touching;
+}
+
+/// The same cell among the 125 up to two away: (d_x + 2) + 5 (d_y + 2) + 25 (d_z + 2).
 [[nodiscard]] inline int widened_code(int touching) {
     return (touching % 3 + 1) + 5 * (touching / 3 % 3 + 1) + 25 * (touching / 9 + 1);
 }

@@ -83,7 +83,7 @@ class LayerOffsets {
 
     [[nodiscard]] const std::vector<std::size_t>& first() const { return first_; }
 
-    void scatter(std::size_t task, const std::vector<Patch>& from, std::vector<Patch>& to) {
+    void scatter(std::size_t task, const std::vector<Patch>& from, BulkVector<Patch>& to) {
         Range& range = ranges_[task];
         for (const Patch& p : from) to[range.count[p.z - range.lowest]++] = p;
     }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/base/bulk_vector.h"
 #include "core/base/run_control.h"
 #include "core/shell/triangle_cells.h"
 
@@ -12,7 +13,7 @@ namespace fretwork {
 /// Patches with z = k are patches[first[k] .. first[k + 1]); within a layer their triangles ascend.
 struct LayeredPatches {
     std::vector<std::size_t> first;
-    std::vector<Patch> patches;
+    BulkVector<Patch> patches;
 };
 
 /// Cost: linear in the patches and the triangles; both are shared out evenly between the threads.

@@ -1,6 +1,8 @@
 #include "core/shell/shell_entries.h"
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -160,14 +162,16 @@ class LayerBuilder {
     std::vector<const Patch*> by_sheet_;
 };
 
-void resize(SurfaceVoxels& shell, std::size_t count) {
-    shell.coords.resize(count);
-    shell.normals.resize(count);
-    shell.points_mm.resize(count);
-    shell.triangles.resize(count);
-    shell.area_mm2.resize(count);
-    shell.facing_area_mm2.resize(count);
-    shell.centroids_voxels.resize(count);
+// One array per task: what costs is the first touch of their memory.
+void resize(SurfaceVoxels& shell, EntryTriangles& triangles, std::size_t count, std::size_t triangle_count) {
+    const std::array<std::function<void()>, 8> arrays = {
+        [&] { shell.coords.resize(count); },           [&] { shell.normals.resize(count); },
+        [&] { shell.points_mm.resize(count); },        [&] { shell.triangles.resize(count); },
+        [&] { shell.area_mm2.resize(count); },         [&] { shell.facing_area_mm2.resize(count); },
+        [&] { shell.centroids_voxels.resize(count); }, [&] { triangles.triangle.resize(triangle_count); }};
+    parallel_for(arrays.size(), 1, [&](std::size_t k) { arrays[k](); });
+    triangles.first.resize(count + 1);
+    triangles.first.back() = static_cast<std::uint32_t>(triangle_count);
 }
 
 void copy_layer(const Layer& layer, std::size_t first_entry, std::size_t first_triangle, SurfaceVoxels& shell,
@@ -204,11 +208,8 @@ EntryTriangles make_entries(const GriddedMesh& mesh, const LayeredPatches& patch
 
     std::vector<std::size_t> first_entry(layer_count + 1, 0);
     for (std::size_t z = 0; z < layer_count; ++z) first_entry[z + 1] = first_entry[z] + layers[z].entries.size();
-    resize(shell, first_entry.back());
     EntryTriangles result;
-    result.first.resize(first_entry.back() + 1);
-    result.first.back() = static_cast<std::uint32_t>(patches.patches.size());
-    result.triangle.resize(patches.patches.size());
+    resize(shell, result, first_entry.back(), patches.patches.size());
     parallel_for(layer_count, 1, [&](std::size_t z) {
         copy_layer(layers[z], first_entry[z], patches.first[z], shell, result);
         layers[z] = {};
@@ -216,7 +217,7 @@ EntryTriangles make_entries(const GriddedMesh& mesh, const LayeredPatches& patch
     return result;
 }
 
-void fill_missing_normals(const Adjacency& links, std::vector<Vec3f>& normals) {
+void fill_missing_normals(const TouchingEntries& touching, const TouchingLinks& links, std::vector<Vec3f>& normals) {
     std::vector<VoxelIndex> missing;
     for (VoxelIndex v = 0; v < normals.size(); ++v)
         if (normals[v] == Vec3f::Zero()) missing.push_back(v);
@@ -224,7 +225,9 @@ void fill_missing_normals(const Adjacency& links, std::vector<Vec3f>& normals) {
         // All of one round look at the round before, so that the order does not matter.
         std::vector<Vec3f> found(missing.size(), Vec3f::Zero());
         for (std::size_t i = 0; i < missing.size(); ++i)
-            for (const VoxelIndex w : links.of(missing[i])) found[i] += normals[w];
+            touching.visit(missing[i], [&](VoxelIndex w, int code) {
+                if (links.holds(touching.rows(), missing[i], w, code)) found[i] += normals[w];
+            });
         std::vector<VoxelIndex> left;
         for (std::size_t i = 0; i < missing.size(); ++i)
             if (found[i].norm() > 1e-3F)

@@ -18,7 +18,7 @@ EntryTriangles make_entries(const GriddedMesh& mesh, const LayeredPatches& patch
 
 /// Entries that hold nothing but triangles without area have no normal yet. They take the mean of their neighbours,
 /// spreading from entry to entry over `links`; +z where there is none in reach.
-void fill_missing_normals(const Adjacency& links, std::vector<Vec3f>& normals);
+void fill_missing_normals(const TouchingEntries& touching, const TouchingLinks& links, std::vector<Vec3f>& normals);
 
 /// Component of each entry; components are numbered in the order of their lowest triangle.
 std::vector<std::uint32_t> components_by_lowest_triangle(const Adjacency& adjacency, const EntryTriangles& triangles);

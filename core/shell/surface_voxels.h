@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/bulk_vector.h"
 #include "core/base/vec.h"
 
 namespace fretwork {
@@ -29,8 +30,8 @@ struct VoxelGrid {
 /// ascending. Every edge is stored in both directions.
 struct Adjacency {
     std::vector<std::uint32_t> first;
-    std::vector<VoxelIndex> neighbor;
-    std::vector<float> length_voxels;  ///< 1, sqrt 2 or sqrt 3 between cells; 0 within one cell never occurs
+    BulkVector<VoxelIndex> neighbor;
+    BulkVector<float> length_voxels;  ///< 1, sqrt 2 or sqrt 3 between cells; 0 within one cell never occurs
 
     [[nodiscard]] std::span<const VoxelIndex> of(VoxelIndex v) const {
         return {neighbor.data() + first[v], neighbor.data() + first[v + 1]};

@@ -94,10 +94,11 @@ SurfaceVoxels voxelize(const TriangleMesh& mesh, const VoxelizeSettings& setting
     patches = {};
     run.checkpoint("voxelize", 0.7);
     const CellRows rows(shell.grid.extent, shell.coords);
-    const Adjacency direct = link_shared_triangles(rows, shell.coords, triangles, run);
-    fill_missing_normals(direct, shell.normals);
+    const TouchingEntries touching(rows, run);
+    const TouchingLinks direct = link_shared_triangles(touching, triangles, run);
+    fill_missing_normals(touching, direct, shell.normals);
     run.checkpoint("voxelize", 0.85);
-    shell.adjacency = link_around_common_neighbors(rows, shell.coords, shell.normals, direct, run);
+    shell.adjacency = link_around_common_neighbors(touching, shell.normals, direct, run);
     shell.components = components_by_lowest_triangle(shell.adjacency, triangles);
     run.checkpoint("voxelize", 1.0);
     return shell;
