@@ -91,19 +91,24 @@ class LinkFollower {
     std::vector<float> best_;  // cosine of the least bent way
 };
 
+// A cell of the cube around an entry: its row among the 25, and the set of cells before it in this row.
+struct CubeCell {
+    std::uint8_t row;
+    std::uint8_t before;
+};
+
+constexpr std::array<CubeCell, 125> cube_cells() {
+    std::array<CubeCell, 125> cells{};
+    for (std::size_t bit = 0; bit < 125; ++bit)
+        cells[bit] = {static_cast<std::uint8_t>(bit / 5), static_cast<std::uint8_t>((1u << bit % 5) - 1)};
+    return cells;
+}
+
+constexpr std::array<CubeCell, 125> kCubeCells = cube_cells();
+// Bits of four that are set.
+constexpr std::array<std::uint8_t, 16> kOnes = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+
 }  // namespace
-
-void NeighborLists::Cube::add(std::uint64_t touching, int bit) {
-    low |= touching << bit;
-    high |= (touching >> 1) >> (63 - bit);
-}
-
-std::uint32_t NeighborLists::Cube::layer(int z) const {
-    constexpr std::uint64_t cells = (std::uint64_t{1} << 25) - 1;
-    if (z < 2) return static_cast<std::uint32_t>(low >> (25 * z) & cells);
-    if (z == 2) return static_cast<std::uint32_t>((low >> 50 | high << 14) & cells);
-    return static_cast<std::uint32_t>(high >> (25 * z - 64) & cells);
-}
 
 // Finds the entries of cells by sliding along the 25 rows around a row of entries.
 class NeighborLists::RowCursors {
@@ -112,46 +117,89 @@ class NeighborLists::RowCursors {
 
     // v ascends from call to call.
     std::span<const std::uint32_t> list(VoxelIndex v, const Reached& reached) {
-        const VoxelCoord& c = coords_[v];
-        if (!started_ || c[1] != y_ || c[2] != z_) place(c);
-        std::size_t found = 0;
-        for (int z = 0; z < 5; ++z) {
-            std::uint32_t cells = reached.cells.layer(z);
-            std::uint32_t smooth = reached.smooth.layer(z);
-            if (z == 2) cells &= ~(1u << 12);  // v itself
-            for (std::size_t k = 5 * static_cast<std::size_t>(z); cells != 0; ++k, cells >>= 5, smooth >>= 5)
-                if ((cells & 31u) != 0) found = add_row(row_[k], c[0], cells & 31u, smooth, found);
-        }
+        slide_to(coords_[v]);
+        constexpr std::uint64_t own = std::uint64_t{1} << 62;
+        std::size_t found = add_cells(reached.cells.low & ~own, reached.smooth.low, 0, 0);
+        found = add_cells(reached.cells.high, reached.smooth.high, 64, found);
         return {found_.data(), found};
     }
 
   private:
-    void place(const VoxelCoord& c) {
+    // The cells x - 2 .. x + 2 of one row.
+    struct Window {
+        std::uint32_t begin = 0;  // entries from the first of these cells on ..
+        std::uint32_t end = 0;    // .. to the last
+        std::uint32_t row_end = 0;
+        std::uint32_t occupied = 0;  // cells that hold an entry
+        bool single = true;          // none of them holds more
+    };
+
+    void slide_to(const VoxelCoord& c) {
+        if (!started_ || c[1] != at_[1] || c[2] != at_[2]) {
+            std::size_t k = 0;
+            for (int dz = -2; dz <= 2; ++dz)
+                for (int dy = -2; dy <= 2; ++dy) {
+                    const CellRows::Row row = rows_.row(c[1] + dy, c[2] + dz);
+                    windows_[k++] = {row.begin, row.begin, row.end, 0, true};
+                }
+            for (Window& w : windows_) open(w, c[0]);
+        } else if (c[0] == at_[0] + 1) {
+            for (Window& w : windows_) step(w, c[0]);
+        } else if (c[0] != at_[0]) {
+            for (Window& w : windows_) open(w, c[0]);
+        }
         started_ = true;
-        y_ = c[1];
-        z_ = c[2];
-        std::size_t k = 0;
-        for (int dz = -2; dz <= 2; ++dz)
-            for (int dy = -2; dy <= 2; ++dy) row_[k++] = rows_.row(y_ + dy, z_ + dz);
+        at_ = c;
     }
 
-    // Entries of the cells x - 2 .. x + 2 whose bits are set.
-    std::size_t add_row(CellRows::Row& row, int x, std::uint32_t cells, std::uint32_t smooth, std::size_t found) {
-        while (row.begin < row.end && rows_.x_of(row.begin) < x - 2) ++row.begin;
-        for (std::uint32_t w = row.begin; w < row.end && rows_.x_of(w) <= x + 2; ++w) {
-            const int bit = rows_.x_of(w) - x + 2;
-            found_[found] = (smooth >> bit & 1u) != 0 ? w : w | kCreased;
-            found += cells >> bit & 1u;
+    void open(Window& w, int x) const {
+        while (w.begin < w.row_end && rows_.x_of(w.begin) < x - 2) ++w.begin;
+        w.occupied = 0;
+        w.single = true;
+        for (w.end = w.begin; w.end < w.row_end && rows_.x_of(w.end) <= x + 2; ++w.end) {
+            const std::uint32_t cell = 1u << (rows_.x_of(w.end) - x + 2);
+            w.single = w.single && (w.occupied & cell) == 0;
+            w.occupied |= cell;
+        }
+    }
+
+    // From the window around x - 1; without a branch where cells hold one entry.
+    void step(Window& w, int x) const {
+        if (!w.single) return open(w, x);
+        w.begin += w.occupied & 1u;
+        w.occupied >>= 1;
+        if (w.end == w.row_end || rows_.x_of(w.end) != x + 2) return;
+        if (w.end + 1 < w.row_end && rows_.x_of(w.end + 1) == x + 2) return open(w, x);
+        w.occupied |= 1u << 4;
+        ++w.end;
+    }
+
+    // The entry of each of 64 cells of the cube, from cell `first` on.
+    std::size_t add_cells(std::uint64_t cells, std::uint64_t smooth, std::size_t first, std::size_t found) {
+        for (; cells != 0; cells &= cells - 1) {
+            const auto bit = static_cast<std::size_t>(std::countr_zero(cells));
+            const CubeCell& cell = kCubeCells[first + bit];
+            const Window& w = windows_[cell.row];
+            const std::uint32_t entry = w.single ? w.begin + kOnes[w.occupied & cell.before] : entry_at(w, cell.before);
+            found_[found++] = entry | static_cast<std::uint32_t>(~smooth >> bit & 1u) << 31;
         }
         return found;
+    }
+
+    // The entry after those in the cells `before`. A cell in N(v) holds one entry, others may hold more.
+    [[nodiscard]] std::uint32_t entry_at(const Window& w, std::uint32_t before) const {
+        const int x = at_[0] - 2 + std::popcount(before);
+        std::uint32_t entry = w.begin;
+        while (rows_.x_of(entry) < x) ++entry;
+        return entry;
     }
 
     const CellRows& rows_;
     const std::vector<VoxelCoord>& coords_;
     bool started_ = false;
-    int y_ = 0, z_ = 0;
-    std::array<CellRows::Row, 25> row_;
-    std::array<std::uint32_t, 126> found_;  // one more than fit, for what is overwritten
+    VoxelCoord at_ = {0, 0, 0};
+    std::array<Window, 25> windows_;
+    std::array<std::uint32_t, 125> found_;
 };
 
 NeighborLists::NeighborLists(const PyramidLevel& level, const Ways& ways, const RunControl& run)

@@ -35,8 +35,11 @@ class NeighborLists {
     struct Cube {
         std::uint64_t low = 0, high = 0;
 
-        void add(std::uint64_t touching, int code);
-        [[nodiscard]] std::uint32_t layer(int z) const;
+        /// \param bit  of the lowest cell of `touching`
+        void add(std::uint64_t touching, int bit) {
+            low |= touching << bit;
+            high |= (touching >> 1) >> (63 - bit);
+        }
     };
     /// Cells that an entry is linked to, and its own, as a part of its cube.
     struct Touching {
