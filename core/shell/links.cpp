@@ -135,15 +135,13 @@ TouchingEntries::TouchingEntries(const CellRows& rows, const RunControl& run)
     parallel_chunks(rows.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         run.throw_if_stopped();
         Chunk& chunk = chunks_[begin / kGrain];
-        chunk.first.fill(0);
-        chunk.entry.reserve(12 * (end - begin));
-        chunk.code.reserve(12 * (end - begin));
+        chunk.around.reserve(12 * (end - begin));
+        std::size_t row = 0;
         rows.sweep(begin, end, [&](VoxelIndex v, VoxelIndex w, int code) {
-            chunk.entry.push_back(w);
-            chunk.code.push_back(static_cast<std::uint8_t>(code));
-            ++chunk.first[v - begin + 1];
+            while (row <= v - begin) chunk.first[row++] = static_cast<std::uint32_t>(chunk.around.size());
+            chunk.around.push_back({w, static_cast<std::uint32_t>(code)});
         });
-        for (std::size_t i = 0; i < kGrain; ++i) chunk.first[i + 1] += chunk.first[i];
+        while (row <= kGrain) chunk.first[row++] = static_cast<std::uint32_t>(chunk.around.size());
     });
 }
 

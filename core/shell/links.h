@@ -39,17 +39,20 @@ class TouchingEntries {
     void visit(VoxelIndex v, const Visit& visit_entry) const {
         const Chunk& chunk = chunks_[v / kGrain];
         for (std::uint32_t i = chunk.first[v % kGrain]; i < chunk.first[v % kGrain + 1]; ++i)
-            visit_entry(chunk.entry[i], static_cast<int>(chunk.code[i]));
+            visit_entry(chunk.around[i].entry, static_cast<int>(chunk.around[i].code));
     }
 
     /// Entries per share of work.
     static constexpr std::size_t kGrain = 2048;
 
   private:
+    struct Around {
+        VoxelIndex entry;
+        std::uint32_t code;
+    };
     struct Chunk {
         std::array<std::uint32_t, kGrain + 1> first;
-        std::vector<VoxelIndex> entry;
-        std::vector<std::uint8_t> code;
+        std::vector<Around> around;
     };
 
     const CellRows& rows_;

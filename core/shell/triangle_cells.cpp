@@ -24,27 +24,34 @@ struct Polygon {
 
 using Point = std::array<double, 3>;
 
-Point point_at(const Point& a, const Point& b, int axis, double at) {
-    const double t = (at - a[static_cast<std::size_t>(axis)]) /
-                     (b[static_cast<std::size_t>(axis)] - a[static_cast<std::size_t>(axis)]);
+template <std::size_t Axis>
+Point point_at(const Point& a, const Point& b, double at) {
+    const double t = (at - a[Axis]) / (b[Axis] - a[Axis]);
     Point p;
     for (std::size_t k = 0; k < 3; ++k) p[k] = a[k] + t * (b[k] - a[k]);
-    p[static_cast<std::size_t>(axis)] = at;
+    p[Axis] = at;
     return p;
 }
 
-// Sutherland-Hodgman against one plane. `sign` +1 keeps what lies below `at`, -1 what lies above.
-void cut_by_plane(const Polygon& in, int axis, double at, double sign, Polygon& out) {
-    const auto a = static_cast<std::size_t>(axis);
-    out.size = 0;
-    for (int i = 0; i < in.size; ++i) {
-        const Point& p = in.corner[static_cast<std::size_t>(i)];
-        const Point& q = in.corner[static_cast<std::size_t>(i + 1 == in.size ? 0 : i + 1)];
-        const bool keeps_p = sign * (p[a] - at) <= 0.0;
-        const bool keeps_q = sign * (q[a] - at) <= 0.0;
-        if (keeps_p) out.corner[static_cast<std::size_t>(out.size++)] = p;
-        if (keeps_p != keeps_q) out.corner[static_cast<std::size_t>(out.size++)] = point_at(p, q, axis, at);
+enum class Side { kBelow, kAbove };
+
+// Sutherland-Hodgman against one plane: keeps what lies on one side of `at`.
+template <std::size_t Axis, Side Kept>
+void cut_by_plane(const Polygon& in, double at, Polygon& out) {
+    const auto keeps = [at](const Point& p) { return Kept == Side::kBelow ? p[Axis] <= at : p[Axis] >= at; };
+    const Point* p = in.corner.data();
+    const Point* const first = p;
+    const Point* const end = p + in.size;
+    Point* to = out.corner.data();
+    for (bool keeps_p = in.size > 0 && keeps(*p); p != end; ++p) {
+        const Point& q = p + 1 == end ? *first : p[1];
+        const bool keeps_q = keeps(q);
+        *to = *p;
+        to += keeps_p ? 1 : 0;
+        if (keeps_p != keeps_q) *to++ = point_at<Axis>(*p, q, at);
+        keeps_p = keeps_q;
     }
+    out.size = static_cast<int>(to - out.corner.data());
 }
 
 struct Range {
@@ -52,11 +59,11 @@ struct Range {
     double high;
 };
 
-Range range_along(const Polygon& polygon, int axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    Range range = {polygon.corner[0][a], polygon.corner[0][a]};
+template <std::size_t Axis>
+Range range_along(const Polygon& polygon) {
+    Range range = {polygon.corner[0][Axis], polygon.corner[0][Axis]};
     for (int i = 1; i < polygon.size; ++i) {
-        const double x = polygon.corner[static_cast<std::size_t>(i)][a];
+        const double x = polygon.corner[static_cast<std::size_t>(i)][Axis];
         range.low = std::min(range.low, x);
         range.high = std::max(range.high, x);
     }
@@ -70,16 +77,17 @@ struct LayerCut {
 };
 
 // The part of `in` between the planes of layer `cell`, widened; `in` itself where nothing is cut off.
-const Polygon& cut_to_layer(const Polygon& in, const Range& range, int axis, int cell, LayerCut& cut) {
+template <std::size_t Axis>
+const Polygon& cut_to_layer(const Polygon& in, const Range& range, int cell, LayerCut& cut) {
     const double low = cell - kWiden;
     const double high = cell + 1 + kWiden;
     const Polygon* part = &in;
     if (range.high > high) {
-        cut_by_plane(*part, axis, high, 1.0, cut.below);
+        cut_by_plane<Axis, Side::kBelow>(*part, high, cut.below);
         part = &cut.below;
     }
     if (range.low < low) {
-        cut_by_plane(*part, axis, low, -1.0, cut.between);
+        cut_by_plane<Axis, Side::kAbove>(*part, low, cut.between);
         part = &cut.between;
     }
     return *part;
@@ -143,10 +151,10 @@ Vec3 closest_to_origin(const Polygon& polygon, const Vec3& center, const Vec3& n
 
 // Both cells beside a face list a patch that lies in the face, and each takes half of its area.
 double share_of_area(const Polygon& polygon, const VoxelCoord& cell) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const Range range = range_along(polygon, axis);
-        const double low = cell[static_cast<std::size_t>(axis)];
-        if (range.high - low <= kWiden || low + 1.0 - range.low <= kWiden) return 0.5;
+    const std::array<Range, 3> ranges = {range_along<0>(polygon), range_along<1>(polygon), range_along<2>(polygon)};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double low = cell[axis];
+        if (ranges[axis].high - low <= kWiden || low + 1.0 - ranges[axis].low <= kWiden) return 0.5;
     }
     return 1.0;
 }
@@ -257,18 +265,18 @@ void cut_triangle(const GriddedMesh& mesh, std::uint32_t index, const VoxelCoord
     LayerCut z_cut;
     LayerCut y_cut;
     LayerCut x_cut;
-    const Range z_range = range_along(whole, 2);
+    const Range z_range = range_along<2>(whole);
     for (int z = first_layer(z_range, z_begin); z < past_last_layer(z_range, z_end); ++z) {
-        const Polygon& layer = cut_to_layer(whole, z_range, 2, z, z_cut);
+        const Polygon& layer = cut_to_layer<2>(whole, z_range, z, z_cut);
         if (layer.size == 0) continue;
-        const Range y_range = range_along(layer, 1);
+        const Range y_range = range_along<1>(layer);
         for (int y = first_layer(y_range, 0); y < past_last_layer(y_range, extent[1]); ++y) {
             run.throw_if_stopped();
-            const Polygon& row = cut_to_layer(layer, y_range, 1, y, y_cut);
+            const Polygon& row = cut_to_layer<1>(layer, y_range, y, y_cut);
             if (row.size == 0) continue;
-            const Range x_range = range_along(row, 0);
+            const Range x_range = range_along<0>(row);
             for (int x = first_layer(x_range, 0); x < past_last_layer(x_range, extent[0]); ++x)
-                cutter.add_if_met(cut_to_layer(row, x_range, 0, x, x_cut), {x, y, z});
+                cutter.add_if_met(cut_to_layer<0>(row, x_range, x, x_cut), {x, y, z});
         }
     }
 }
