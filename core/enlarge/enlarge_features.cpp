@@ -58,11 +58,11 @@ double checked_width(const SurfaceVoxels& shell, const char* name, double width_
 
 class Enlarger {
   public:
-    Enlarger(const SurfaceVoxels& shell, const SolidStates& states, const std::vector<std::uint8_t>& protect,
-             double feature_voxels, double hole_voxels, const RunControl& run)
+    Enlarger(const SurfaceVoxels& shell, const GeodesicLinks& links, const SolidStates& states,
+             const std::vector<std::uint8_t>& protect, double feature_voxels, double hole_voxels, const RunControl& run)
         : shell_(shell),
           run_(run),
-          links_(link_two_rings(shell, run)),
+          links_(links),
           disc_(links_),
           feature_(feature_voxels),
           hole_(hole_voxels),
@@ -249,7 +249,7 @@ class Enlarger {
 
     const SurfaceVoxels& shell_;
     const RunControl& run_;
-    GeodesicLinks links_;
+    const GeodesicLinks& links_;
     GeodesicDisc disc_;
     double feature_;
     double hole_;
@@ -261,7 +261,7 @@ class Enlarger {
 
 }  // namespace
 
-EnlargeResult enlarge_features(const SurfaceVoxels& shell, const SolidStates& solid,
+EnlargeResult enlarge_features(const SurfaceVoxels& shell, const GeodesicLinks& links, const SolidStates& solid,
                                const std::vector<std::uint8_t>& protect, const EnlargeSettings& settings,
                                const RunControl& run) {
     if (shell.size() == 0) throw InvalidInput("enlarge: the shell has no voxels");
@@ -271,7 +271,13 @@ EnlargeResult enlarge_features(const SurfaceVoxels& shell, const SolidStates& so
     const double feature = checked_width(shell, "min_feature_mm", settings.min_feature_mm) + kDrawnSolidBorder;
     const double hole = checked_width(shell, "min_hole_mm", settings.min_hole_mm) + kDrawnHoleBorder;
     run.checkpoint(kStage, 0.0);
-    return Enlarger(shell, solid, protect, feature, hole, run).run();
+    return Enlarger(shell, links, solid, protect, feature, hole, run).run();
+}
+
+EnlargeResult enlarge_features(const SurfaceVoxels& shell, const SolidStates& solid,
+                               const std::vector<std::uint8_t>& protect, const EnlargeSettings& settings,
+                               const RunControl& run) {
+    return enlarge_features(shell, link_two_rings(shell, run), solid, protect, settings, run);
 }
 
 }  // namespace fretwork

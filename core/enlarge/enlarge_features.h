@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/base/run_control.h"
+#include "core/enlarge/geodesic_links.h"
 #include "core/shell/surface_voxels.h"
 
 namespace fretwork {
@@ -28,9 +29,14 @@ struct EnlargeResult {
 /// half a voxel (which the border drawn between voxels may take away), every empty voxel in one of
 /// diameter `min_hole_mm` of empty voxels, both to one voxel, and each connected component of the shell
 /// carries one connected component of solid.
+/// \param links    of the shell, by `link_two_rings`
 /// \param protect  voxels that must keep their state (kept regions); may be empty
 /// \throws InvalidSetting  a width that is not positive; ConstraintsNotMet  a width under two voxels
 ///                         (names the resolution that would do) or over half of the object.
+EnlargeResult enlarge_features(const SurfaceVoxels& shell, const GeodesicLinks& links, const SolidStates& solid,
+                               const std::vector<std::uint8_t>& protect, const EnlargeSettings& settings,
+                               const RunControl& run = {});
+/// The same, with links made for this call.
 EnlargeResult enlarge_features(const SurfaceVoxels& shell, const SolidStates& solid,
                                const std::vector<std::uint8_t>& protect, const EnlargeSettings& settings,
                                const RunControl& run = {});

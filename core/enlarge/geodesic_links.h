@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/bulk_vector.h"
 #include "core/base/run_control.h"
 #include "core/shell/surface_voxels.h"
 
@@ -18,8 +19,8 @@ namespace fretwork {
 /// over the 26 neighbours alone are up to 8 % longer and count cells instead of millimetres on slanted sheets.
 struct GeodesicLinks {
     std::vector<std::uint32_t> first;
-    std::vector<VoxelIndex> neighbor;
-    std::vector<float> length_voxels;
+    BulkVector<VoxelIndex> neighbor;
+    BulkVector<float> length_voxels;
 
     [[nodiscard]] std::size_t size() const { return first.empty() ? 0 : first.size() - 1; }
 };
@@ -33,6 +34,7 @@ using VoxelMask = std::vector<std::uint8_t>;
 constexpr float kBeyondReach = std::numeric_limits<float>::infinity();
 
 /// Distance in voxels from each voxel to the nearest of `sources`; kBeyondReach where it exceeds `reach_voxels`.
+/// Cost: linear in the links of the voxels within reach; parallel.
 std::vector<float> geodesic_distance(const GeodesicLinks& links, const VoxelMask& sources, double reach_voxels,
                                      const RunControl& run = {});
 

@@ -170,14 +170,17 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     note_structure(loop, report);
     result.reinforced = std::move(loop.forced);
 
-    EnlargeResult enlarged = plan.run(
-        "enlarge", [&](const RunControl& r) { return enlarge_features(shell, loop.solid, keep, resolved.enlarge, r); });
+    GeodesicLinks links;
+    EnlargeResult enlarged = plan.run("enlarge", [&](const RunControl& r) {
+        links = link_two_rings(shell, r);
+        return enlarge_features(shell, links, loop.solid, keep, resolved.enlarge, r);
+    });
     note_pattern(shell, enlarged, report);
     result.solid = std::move(enlarged.solid);
     result.voxel_colors = read_color(input.exemplar, synthesizer.frames());
 
     result.carved = plan.run("solidify", [&](const RunControl& r) {
-        const PatternField pattern(result.surface, shell, result.solid, synthesizer.frames(), input.exemplar,
+        const PatternField pattern(result.surface, shell, links, result.solid, synthesizer.frames(), input.exemplar,
                                    keep_field, r.slice(0.0, 0.1));
         return solidify(result.surface, shell, pattern, resolved.solidify, r.slice(0.1, 1.0));
     });

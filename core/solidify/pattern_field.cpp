@@ -18,6 +18,8 @@
 namespace fretwork {
 namespace {
 
+constexpr std::size_t kGrain = 1024;
+
 /// Radius of the kernel that blends the voxels' own views of the pattern, in voxels.
 constexpr double kKernel = 1.6;
 /// The same for colours, which bear less blur.
@@ -56,14 +58,15 @@ std::vector<Vec3f> unit_normals(const TriangleMesh& mesh) {
 
 class VoxelPattern {
   public:
-    VoxelPattern(const TriangleMesh& mesh, const SurfaceVoxels& shell, const SolidStates& solid,
-                 const TexelFrames& frames, const Exemplar& exemplar, const RegionField& keep, const RunControl& run)
+    VoxelPattern(const TriangleMesh& mesh, const SurfaceVoxels& shell, const GeodesicLinks& links,
+                 const SolidStates& solid, const TexelFrames& frames, const Exemplar& exemplar, const RegionField& keep,
+                 const RunControl& run)
         : shell_(shell),
           frames_(frames),
           keep_(keep),
           index_(shell),
           sampler_(exemplar),
-          links_(link_two_rings(shell, run)),
+          links_(links),
           normals_(unit_normals(mesh)) {
         wrap_frames(exemplar);
         build_border(solid, run);
@@ -117,12 +120,12 @@ class VoxelPattern {
     /// Voxels with neighbours of their own colour all around.
     void find_plain() {
         own_color_.resize(shell_.size());
-        parallel_for(shell_.size(), 4096, [&](std::size_t i) {
+        parallel_for(shell_.size(), kGrain, [&](std::size_t i) {
             const auto [u, w] = texel(static_cast<VoxelIndex>(i), shell_.points_mm[i]);
             own_color_[i] = to_bytes(sampler_.solid_color(u, w));
         });
         plain_.resize(shell_.size());
-        parallel_for(shell_.size(), 4096, [&](std::size_t i) {
+        parallel_for(shell_.size(), kGrain, [&](std::size_t i) {
             bool plain = true;
             for (const VoxelIndex v : shell_.adjacency.of(static_cast<VoxelIndex>(i)))
                 for (std::size_t k = 0; k < 3; ++k)
@@ -146,7 +149,7 @@ class VoxelPattern {
     void build_border(const SolidStates& solid, const RunControl& run) {
         const std::size_t n = shell_.size();
         std::vector<float> label(n);
-        parallel_for(n, 4096, [&](std::size_t v) {
+        parallel_for(n, kGrain, [&](std::size_t v) {
             label[v] = static_cast<float>(label_distance(static_cast<VoxelIndex>(v), shell_.points_mm[v]));
         });
         const VoxelMask states = carved_states(solid, label);
@@ -165,7 +168,7 @@ class VoxelPattern {
     /// own exact border, which the voxels' would only roughen.
     [[nodiscard]] VoxelMask carved_states(const SolidStates& solid, const std::vector<float>& label) const {
         VoxelMask states(shell_.size());
-        parallel_for(shell_.size(), 4096, [&](std::size_t v) {
+        parallel_for(shell_.size(), kGrain, [&](std::size_t v) {
             states[v] = solid[v] == SolidState::kSolid ? 1 : 0;
             if (states[v] != 0 && label[v] > 0.0F && !keep_.empty() &&
                 keep_.signed_distance_mm(shell_.points_mm[v], shell_.triangles[v]) <= 0.0)
@@ -180,7 +183,7 @@ class VoxelPattern {
             return (label[v] < 0.0F) == (states[v] != 0) || std::abs(label[v]) < 0.2F;
         };
         VoxelMask trusted(shell_.size());
-        parallel_for(shell_.size(), 4096, [&](std::size_t i) {
+        parallel_for(shell_.size(), kGrain, [&](std::size_t i) {
             const auto v = static_cast<VoxelIndex>(i);
             bool good = agrees(v);
             for (const VoxelIndex u : shell_.adjacency.of(v)) {
@@ -236,7 +239,7 @@ class VoxelPattern {
     const RegionField& keep_;
     ShellIndex index_;
     TexelSampler sampler_;
-    GeodesicLinks links_;
+    const GeodesicLinks& links_;
     std::vector<Vec2> origin_;
     std::vector<float> pixels_per_voxel_;
     VoxelMask trusted_;
@@ -254,13 +257,13 @@ struct PatternField::Impl {
     std::function<Rgb8(const Vec3&, std::uint32_t)> color;
 };
 
-PatternField::PatternField(const TriangleMesh& mesh, const SurfaceVoxels& shell, const SolidStates& solid,
-                           const TexelFrames& frames, const Exemplar& exemplar, const RegionField& keep,
-                           const RunControl& run) {
+PatternField::PatternField(const TriangleMesh& mesh, const SurfaceVoxels& shell, const GeodesicLinks& links,
+                           const SolidStates& solid, const TexelFrames& frames, const Exemplar& exemplar,
+                           const RegionField& keep, const RunControl& run) {
     if (solid.size() != shell.size() || frames.size() != shell.size())
         throw InvalidInput("pattern field: " + std::to_string(solid.size()) + " states and " +
                            std::to_string(frames.size()) + " frames for " + std::to_string(shell.size()) + " voxels");
-    const auto pattern = std::make_shared<const VoxelPattern>(mesh, shell, solid, frames, exemplar, keep, run);
+    const auto pattern = std::make_shared<const VoxelPattern>(mesh, shell, links, solid, frames, exemplar, keep, run);
     impl_ = std::make_unique<const Impl>(
         Impl{[pattern](const Vec3& p, std::uint32_t t) { return pattern->signed_distance_voxels(p, t); },
              [pattern](const Vec3& p, std::uint32_t t) { return pattern->color(p, t); }});

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/base/run_control.h"
+#include "core/enlarge/geodesic_links.h"
 #include "core/exemplar/exemplar.h"
 #include "core/mesh/region.h"
 #include "core/shell/surface_voxels.h"
@@ -25,11 +26,12 @@ namespace fretwork {
 /// Cost  building about 2 s per million voxels; a query about a microsecond.
 class PatternField {
   public:
-    /// \param mesh  from which `shell` was voxelised: a point's triangle tells which sheet it is on
-    /// \param keep  regions that stay solid up to a clean border; may be empty
+    /// \param mesh   from which `shell` was voxelised: a point's triangle tells which sheet it is on
+    /// \param links  of the shell, by `link_two_rings`
+    /// \param keep   regions that stay solid up to a clean border; may be empty
     /// \throws InvalidInput  states or frames that do not match the shell
-    PatternField(const TriangleMesh& mesh, const SurfaceVoxels& shell, const SolidStates& solid,
-                 const TexelFrames& frames, const Exemplar& exemplar, const RegionField& keep,
+    PatternField(const TriangleMesh& mesh, const SurfaceVoxels& shell, const GeodesicLinks& links,
+                 const SolidStates& solid, const TexelFrames& frames, const Exemplar& exemplar, const RegionField& keep,
                  const RunControl& run = {});
     /// A pattern known by formula; the functions get a surface point and its triangle.
     PatternField(std::function<double(const Vec3&, std::uint32_t)> signed_distance_voxels,

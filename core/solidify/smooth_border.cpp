@@ -10,7 +10,7 @@
 namespace fretwork {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kGrain = 512;
 constexpr int kPasses = 14;
 constexpr float kAnchorSlack = 0.5F;
 

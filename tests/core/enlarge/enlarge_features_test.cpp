@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -130,6 +131,53 @@ TEST_CASE("geodesic links: distances on a plate are those of the plane to 3 perc
             CHECK(static_cast<double>(distance[v]) <= truth * 1.03 + 1e-5);
         }
         if (truth > 12.0) CHECK(distance[v] == kBeyondReach);
+    }
+}
+
+TEST_CASE("geodesic links: those of each voxel are its neighbours and theirs, also where sheets share cells",
+          "[enlarge]") {
+    // The two faces of the plate are closer than a voxel.
+    const bool thin = GENERATE(false, true);
+    const SurfaceVoxels shell =
+        voxelize(thin ? testing::make_thin_plate(30.0, 24.0, 0.4) : make_icosphere(10.0, 3), {.resolution = 24});
+    const GeodesicLinks links = link_two_rings(shell);
+    REQUIRE(links.size() == shell.size());
+    for (VoxelIndex v = 0; v < shell.size(); ++v) {
+        std::set<VoxelIndex> ring;
+        for (const VoxelIndex a : shell.adjacency.of(v)) {
+            ring.insert(a);
+            for (const VoxelIndex b : shell.adjacency.of(a)) ring.insert(b);
+        }
+        ring.erase(v);
+        const auto begin = links.neighbor.begin() + links.first[v], end = links.neighbor.begin() + links.first[v + 1];
+        REQUIRE(std::equal(begin, end, ring.begin(), ring.end()));
+    }
+}
+
+TEST_CASE("geodesic links: distances are the least sums of lengths, bit by bit, for any number of threads",
+          "[enlarge]") {
+    const SurfaceVoxels shell = voxelize(make_icosphere(20.0, 4), {.resolution = 60});
+    const GeodesicLinks links = link_two_rings(shell);
+    VoxelMask sources(shell.size(), 0);
+    for (std::size_t v = 0; v < shell.size(); v += 701) sources[v] = 1;
+    const double reach = GENERATE(0.3, 2.5, 9.0);
+    // The plainest way to the same sums: step until nothing changes.
+    std::vector<float> least(shell.size(), kBeyondReach);
+    for (std::size_t v = 0; v < shell.size(); ++v)
+        if (sources[v] != 0) least[v] = 0.0F;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t v = 0; v < shell.size(); ++v)
+            for (std::uint32_t k = links.first[v]; k < links.first[v + 1]; ++k) {
+                const float next = least[v] + links.length_voxels[k];
+                if (next > static_cast<float>(reach) || next >= least[links.neighbor[k]]) continue;
+                least[links.neighbor[k]] = next;
+                changed = true;
+            }
+    }
+    for (const int threads : {1, 2, 4}) {
+        const ThreadLimit limit(threads);
+        CHECK(geodesic_distance(links, sources, reach) == least);
     }
 }
 

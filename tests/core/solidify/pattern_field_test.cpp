@@ -52,6 +52,7 @@ double stripe_distance(double x, double period) {
 TEST_CASE("pattern field: follows the labels below the voxel scale", "[solidify]") {
     const TriangleMesh plate = testing::make_square(40.0);
     const SurfaceVoxels shell = voxelize(plate, {.resolution = 40});
+    const GeodesicLinks links = link_two_rings(shell);
     const double voxel = shell.grid.voxel_mm, angle = 0.3, period_voxels = 8.0, pixels = 4.0;
     const Vec3 across(std::cos(angle), std::sin(angle), 0.0);
     const Exemplar exemplar = stripes(static_cast<int>(period_voxels * pixels));
@@ -61,7 +62,7 @@ TEST_CASE("pattern field: follows the labels below the voxel scale", "[solidify]
         solid[v] = stripe_distance(shell.points_mm[v].dot(across) / voxel, period_voxels) < 0.0 ? SolidState::kSolid
                                                                                                 : SolidState::kEmpty;
     const RegionField keep(plate, {});
-    const PatternField field(plate, shell, solid, frames, exemplar, keep);
+    const PatternField field(plate, shell, links, solid, frames, exemplar, keep);
     for (double y = 5.0; y < 35.0; y += 0.37)
         for (double x = 5.0; x < 35.0; x += 0.41) {
             const double truth = stripe_distance(Vec3(x, y, 0.0).dot(across) / voxel, period_voxels);
@@ -75,6 +76,7 @@ TEST_CASE("pattern field: follows the labels below the voxel scale", "[solidify]
 TEST_CASE("pattern field: where the states overrule the labels the border has no stairs", "[solidify]") {
     const TriangleMesh plate = testing::make_square(50.0);
     const SurfaceVoxels shell = voxelize(plate, {.resolution = 50});
+    const GeodesicLinks links = link_two_rings(shell);
     const double voxel = shell.grid.voxel_mm;
     const double angle = GENERATE(0.1, 0.35, 0.7);
     // A bridge of five voxels across an exemplar that says something else everywhere.
@@ -86,7 +88,7 @@ TEST_CASE("pattern field: where the states overrule the labels the border has no
     const Exemplar exemplar = stripes(8);
     const TexelFrames frames = flat_frames(shell, Vec3::UnitX(), 1.0);
     const RegionField keep(plate, {});
-    const PatternField field(plate, shell, solid, frames, exemplar, keep);
+    const PatternField field(plate, shell, links, solid, frames, exemplar, keep);
     // Width across the bridge, and the position of one border, along its middle.
     double narrowest = 1e9, widest = 0.0;
     const Vec3 along(std::cos(angle), std::sin(angle), 0.0);
@@ -104,6 +106,7 @@ TEST_CASE("pattern field: where the states overrule the labels the border has no
 TEST_CASE("pattern field: kept regions have their own clean border", "[solidify]") {
     const TriangleMesh plate = testing::make_square(40.0);
     const SurfaceVoxels shell = voxelize(plate, {.resolution = 40});
+    const GeodesicLinks links = link_two_rings(shell);
     const RegionField keep(plate, {{"disc", SphereRegion{Vec3(20.3, 19.8, 0.0), 7.2}}});
     SolidStates solid(shell.size(), SolidState::kEmpty);
     for (std::size_t v = 0; v < shell.size(); ++v)
@@ -111,7 +114,7 @@ TEST_CASE("pattern field: kept regions have their own clean border", "[solidify]
     Exemplar exemplar = stripes(8);
     std::fill(exemplar.feature_distance_px.begin(), exemplar.feature_distance_px.end(), 3.0F);
     const TexelFrames frames = flat_frames(shell, Vec3::UnitX(), 1.0);
-    const PatternField field(plate, shell, solid, frames, exemplar, keep);
+    const PatternField field(plate, shell, links, solid, frames, exemplar, keep);
     for (double a = 0.0; a < 6.28; a += 0.05) {
         const Vec3 direction(std::cos(a), std::sin(a), 0.0);
         CHECK(field.signed_distance_voxels(Vec3(20.3, 19.8, 0.0) + 7.15 * direction, 0) < 0.0);
@@ -122,10 +125,11 @@ TEST_CASE("pattern field: kept regions have their own clean border", "[solidify]
 TEST_CASE("pattern field: needs one state and one frame per voxel", "[solidify]") {
     const TriangleMesh plate = testing::make_square(10.0);
     const SurfaceVoxels shell = voxelize(plate, {.resolution = 10});
+    const GeodesicLinks links = link_two_rings(shell);
     const Exemplar exemplar = stripes(8);
     const RegionField keep(plate, {});
-    CHECK_THROWS_AS(PatternField(plate, shell, {}, TexelFrames(shell.size()), exemplar, keep), InvalidInput);
-    CHECK_THROWS_AS(PatternField(plate, shell, SolidStates(shell.size()), {}, exemplar, keep), InvalidInput);
+    CHECK_THROWS_AS(PatternField(plate, shell, links, {}, TexelFrames(shell.size()), exemplar, keep), InvalidInput);
+    CHECK_THROWS_AS(PatternField(plate, shell, links, SolidStates(shell.size()), {}, exemplar, keep), InvalidInput);
 }
 
 }  // namespace
