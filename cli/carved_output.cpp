@@ -46,6 +46,7 @@ std::string thumbnail(const CarvedModel& result, const RunControl& run) {
     RenderSettings picture;
     picture.width = picture.height = 256;
     picture.samples_per_axis = 2;
+    picture.quick = true;
     return picture_of(result, picture, run);
 }
 
@@ -123,6 +124,7 @@ std::string preview_png(const CarvedModel& result, const RunControl& run) {
     if (result.settings.synthesis.preset == Preset::kDraft) {
         picture.width = picture.height = 640;
         picture.samples_per_axis = 2;
+        picture.quick = true;
     }
     return picture_of(result, picture, run);
 }

@@ -69,7 +69,7 @@ std::string write_png(const Image& image) {
                  8, image.has_alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(file.png(), file.info(), PNG_sRGB_INTENT_PERCEPTUAL);
-    png_set_compression_level(file.png(), 6);
+    png_set_compression_level(file.png(), 4);
     png_write_info(file.png(), file.info());
     const std::size_t channels = image.has_alpha ? 4 : 3;
     std::vector<std::uint8_t> row(channels * static_cast<std::size_t>(image.width));

@@ -124,8 +124,8 @@ std::size_t SurfaceTree::triangle_count() const {
     return impl_->corners.size();
 }
 
-ClosestPoint SurfaceTree::closest(const Vec3& point_mm, double reach_mm) const {
-    return impl_->closest(point_mm, reach_mm, std::numeric_limits<std::uint32_t>::max());
+ClosestPoint SurfaceTree::closest(const Vec3& point_mm, double reach_mm, std::uint32_t hint) const {
+    return impl_->closest(point_mm, reach_mm, hint);
 }
 
 std::vector<ClosestPoint> SurfaceTree::closest(std::span<const Vec3> points_mm, double reach_mm,
@@ -133,7 +133,7 @@ std::vector<ClosestPoint> SurfaceTree::closest(std::span<const Vec3> points_mm, 
     std::vector<ClosestPoint> answers(points_mm.size());
     parallel_chunks(points_mm.size(), 1024, [&](std::size_t begin, std::size_t end) {
         run.throw_if_stopped();
-        std::uint32_t hint = std::numeric_limits<std::uint32_t>::max();
+        std::uint32_t hint = kNoHint;
         for (std::size_t i = begin; i < end; ++i) {
             answers[i] = impl_->closest(points_mm[i], reach_mm, hint);
             hint = answers[i].triangle;

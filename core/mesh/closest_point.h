@@ -49,10 +49,13 @@ class SurfaceTree {
 
     [[nodiscard]] std::size_t triangle_count() const;
 
+    static constexpr std::uint32_t kNoHint = std::numeric_limits<std::uint32_t>::max();
+
     /// Closest point of the surface, exact to rounding. Nothing farther than `reach_mm` is looked for, which saves
     /// time in a narrow band.
-    [[nodiscard]] ClosestPoint closest(const Vec3& point_mm,
-                                       double reach_mm = std::numeric_limits<double>::infinity()) const;
+    /// \param hint  a triangle that is likely near, or kNoHint; it saves time and changes nothing
+    [[nodiscard]] ClosestPoint closest(const Vec3& point_mm, double reach_mm = std::numeric_limits<double>::infinity(),
+                                       std::uint32_t hint = kNoHint) const;
 
     /// The same for many points, in parallel. One answer per point.
     [[nodiscard]] std::vector<ClosestPoint> closest(std::span<const Vec3> points_mm,

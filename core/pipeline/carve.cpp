@@ -123,6 +123,11 @@ void note_output(const CarvedMesh& carved, const MeshReport& mesh, RunReport& re
                         report.shell.components));
 }
 
+// A draft is for the eye and does without; `check_carve` counts in any case.
+CountSelfIntersections counts_self_intersections(const Settings& settings) {
+    return settings.synthesis.preset == Preset::kDraft ? CountSelfIntersections::kNo : CountSelfIntersections::kYes;
+}
+
 std::size_t component_count(const SurfaceVoxels& shell) {
     return shell.components.empty() ? 0 : std::ranges::max(shell.components) + std::size_t{1};
 }
@@ -135,8 +140,9 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     CarveResult result;
     RunReport& report = result.report = report_of_request(input, settings);
 
-    PreparedSurface surface =
-        plan.run("repair", [&](const RunControl& r) { return prepare_surface(input.mesh, settings.input, r); });
+    PreparedSurface surface = plan.run("repair", [&](const RunControl& r) {
+        return prepare_surface(input.mesh, settings.input, counts_self_intersections(settings), r);
+    });
     report.input.scale = surface.scale;
     report.input.mesh = surface.found;
     std::ranges::copy(surface.warnings, std::back_inserter(report.warnings));
@@ -207,7 +213,8 @@ RunReport check_carve(const CarveInput& input, const Settings& settings, const R
     RunReport report = report_of_request(input, settings);
     const double scale = input_scale(input.mesh, settings.input);
     report.input.scale = scale;
-    const PreparedSurface surface = prepare_surface(input.mesh, settings.input, run.slice(0.0, 0.8));
+    const PreparedSurface surface =
+        prepare_surface(input.mesh, settings.input, CountSelfIntersections::kYes, run.slice(0.0, 0.8));
     report.input.mesh = surface.found;
     std::ranges::copy(surface.warnings, std::back_inserter(report.warnings));
     const ResolvedSettings resolved =

@@ -33,7 +33,8 @@ Vec3 turned_up(const Vec3& p, UpAxis up) {
 
 }  // namespace
 
-PreparedSurface prepare_surface(const TriangleMesh& mesh, const InputOptions& input, const RunControl& run) {
+PreparedSurface prepare_surface(const TriangleMesh& mesh, const InputOptions& input, CountSelfIntersections count,
+                                const RunControl& run) {
     PreparedSurface surface;
     surface.scale = input_scale(mesh, input);
     TriangleMesh scaled = mesh;
@@ -41,9 +42,11 @@ PreparedSurface prepare_surface(const TriangleMesh& mesh, const InputOptions& in
 
     RepairedMesh repaired = repair_mesh(scaled, {}, run.slice(0.0, 0.4));
     surface.found = report_mesh(scaled, CountSelfIntersections::kNo, run.slice(0.4, 0.5));
-    surface.found.self_intersections =
-        find_self_intersections(repaired.mesh, run.slice(0.5, 1.0), JoinedBy::kPosition).size();
-    surface.found.self_intersections_counted = true;
+    if (count == CountSelfIntersections::kYes) {
+        surface.found.self_intersections =
+            find_self_intersections(repaired.mesh, run.slice(0.5, 1.0), JoinedBy::kPosition).size();
+        surface.found.self_intersections_counted = true;
+    }
     surface.warnings = describe(repaired.counts);
     if (surface.found.self_intersections > 0)
         surface.warnings.push_back(

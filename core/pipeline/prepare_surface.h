@@ -21,8 +21,12 @@ struct PreparedSurface {
     std::vector<std::string> warnings;            ///< what was wrong and what was done, with counts
 };
 
+/// \param count  whether to look for self-intersections, which takes most of the time and changes nothing but the
+///               report and the warnings
 /// \throws InvalidInput       no usable triangle.
 /// \throws ConstraintsNotMet  see input_scale.
-PreparedSurface prepare_surface(const TriangleMesh& mesh, const InputOptions& input, const RunControl& run = {});
+PreparedSurface prepare_surface(const TriangleMesh& mesh, const InputOptions& input,
+                                CountSelfIntersections count = CountSelfIntersections::kYes,
+                                const RunControl& run = {});
 
 }  // namespace fretwork

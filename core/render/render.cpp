@@ -22,6 +22,9 @@ namespace fretwork {
 namespace {
 
 constexpr int kTile = 16;
+/// Light samples of a pixel that looks like its neighbours, in quick pictures. The filter of the light sees to the
+/// rest.
+constexpr int kQuickLight = 2;
 
 void check_range(const char* name, double value, double low, double high) {
     if (!(value >= low && value <= high))
@@ -152,6 +155,7 @@ class Picture {
     }
 
     void draw_tile(int x0, int y0) {
+        if (settings_.quick) return draw_quick_tile(x0, y0);
         for (int y = y0; y < std::min(settings_.height, y0 + kTile); ++y)
             for (int x = x0; x < std::min(settings_.width, x0 + kTile); ++x) draw_pixel(x, y);
     }
@@ -162,7 +166,11 @@ class Picture {
     [[nodiscard]] std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(settings_.width) + static_cast<std::size_t>(x);
     }
+    void draw_quick_tile(int x0, int y0);
     void draw_pixel(int x, int y);
+    [[nodiscard]] Vec3f background_at(double y) const {
+        return top_ + static_cast<float>(y) / static_cast<float>(settings_.height) * (bottom_ - top_);
+    }
     [[nodiscard]] Surface look(const Vec3f& direction) const;
     void add_light(const Surface& seen, const Vec3f& direction, const Vec3f& background, const SampleSequence& random,
                    int sample, PixelSum& sum) const;
@@ -183,6 +191,35 @@ class Picture {
     std::vector<PixelSum> pixels_;
 };
 
+// Looks through the middle of each pixel first, and closer where that is unlike what is seen through a neighbour.
+void Picture::draw_quick_tile(int x0, int y0) {
+    constexpr int kSide = kTile + 2;
+    std::array<Surface, kSide * kSide> middle;
+    const auto at = [&](int x, int y) -> Surface& {
+        return middle[static_cast<std::size_t>((y - y0 + 1) * kSide + (x - x0 + 1))];
+    };
+    const auto direction = [&](int x, int y) -> Vec3f {
+        return camera_.direction(Vec2(x + 0.5, y + 0.5)).cast<float>();
+    };
+    const int x1 = std::min(settings_.width, x0 + kTile), y1 = std::min(settings_.height, y0 + kTile);
+    for (int y = y0 - 1; y <= y1; ++y)
+        for (int x = x0 - 1; x <= x1; ++x) at(x, y) = look(direction(x, y));
+    for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x) {
+            const Surface& seen = at(x, y);
+            bool plain = true;
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx) plain = plain && alike(seen, at(x + dx, y + dy));
+            if (!plain) {
+                draw_pixel(x, y);
+                continue;
+            }
+            const SampleSequence random(index(x, y));
+            for (int s = 0; s < kQuickLight; ++s)
+                add_light(seen, direction(x, y), background_at(y + 0.5), random, s, pixels_[index(x, y)]);
+        }
+}
+
 void Picture::draw_pixel(int x, int y) {
     const SampleSequence random(index(x, y));
     PixelSum& sum = pixels_[index(x, y)];
@@ -194,9 +231,8 @@ void Picture::draw_pixel(int x, int y) {
         if (s == kCorners && uniform) return;
         const Vec2 at = Vec2(x, y) + places_[s];
         const Vec3f direction = camera_.direction(at).cast<float>();
-        const float down = static_cast<float>(at.y()) / static_cast<float>(settings_.height);
         const Surface seen = look(direction);
-        add_light(seen, direction, top_ + down * (bottom_ - top_), random, static_cast<int>(s), sum);
+        add_light(seen, direction, background_at(at.y()), random, static_cast<int>(s), sum);
         if (s == 0) first = seen;
         uniform = uniform && alike(first, seen);
     }

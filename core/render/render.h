@@ -18,8 +18,9 @@ struct RenderSettings {
     double zoom = 1.0;            ///< 1 frames the whole model, 2 shows half of that width; [0.01, 1000]
     std::optional<Vec3> look_at_mm = std::nullopt;  ///< in the middle of the picture; empty: the middle of the model
     double field_of_view_deg = 24.0;                ///< (0, 120]; small values flatten perspective
-    int samples_per_axis = 3;        ///< anti-aliasing: squared rays per pixel where it shows an edge, [1, 16]
-    bool shadows = true;             ///< soft key light and ambient occlusion
+    int samples_per_axis = 3;  ///< anti-aliasing: squared rays per pixel where it shows an edge, [1, 16]
+    bool quick = false;        ///< pixels that look like all their neighbours get one ray from the eye; for drafts
+    bool shadows = true;       ///< soft key light and ambient occlusion
     double crease_angle_deg = 40.0;  ///< facets that meet at less look smooth; 0 shows every facet
     Rgb8 background_top = {236, 240, 244};
     Rgb8 background_bottom = {190, 198, 208};
@@ -33,7 +34,8 @@ struct RenderSettings {
 ///
 /// Colour   a surface that faces the light shows about its own colour; highlights roll off without a shift of hue.
 /// Repeats  the same arguments give the same bytes for any number of threads.
-/// Cost     about 4 s of CPU for 1200 x 1200 px of a million triangles; 200 bytes per triangle, 80 per pixel.
+/// Cost     about 4 s of CPU for 1200 x 1200 px of a million triangles, half of it if quick; 200 bytes per triangle, 80
+/// per pixel.
 ///
 /// \param triangle_colors  sRGB, one per triangle, or empty
 /// \throws InvalidInput    no triangle, an index past the end, a coordinate that is not finite, a number of colours

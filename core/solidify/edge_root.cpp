@@ -18,6 +18,7 @@ class EdgeSearch {
           inside_(inside),
           outside_(outside),
           solid_(std::max(inside.pattern, outside.pattern) < WallField::surely_solid()) {
+        last_.triangle = inside.triangle;
         const bool crosses = field.limits().signed_distance && (inside.phi < 0.0) != (outside.phi < 0.0);
         if (crosses) {
             if (const auto hit = field.tree().first_hit(inside.position_mm, outside.position_mm)) {
@@ -87,7 +88,7 @@ class EdgeSearch {
 
     /// Where f jumps, as the pattern does between two sheets that meet, the surface is that of the sheet inside.
     double settle_inside() {
-        const WallSample s = field_.sample(at(low_), sign_at(low_), reach(low_));
+        const WallSample s = field_.sample(at(low_), sign_at(low_), last_.triangle, reach(low_));
         if (s.found) last_ = s;
         return low_;
     }
@@ -103,9 +104,9 @@ class EdgeSearch {
             if (step >= 3 && high_ - low_ > 0.5 * width) share = 0.5;
             width = high_ - low_;
             s = low_ + share * (high_ - low_);
-            last_ = solid_
-                        ? field_.sample_slab(at(s), sign_at(s), reach(s), std::max(inside_.pattern, outside_.pattern))
-                        : field_.sample(at(s), sign_at(s), reach(s));
+            last_ = solid_ ? field_.sample_slab(at(s), sign_at(s), last_.triangle, reach(s),
+                                                std::max(inside_.pattern, outside_.pattern))
+                           : field_.sample(at(s), sign_at(s), last_.triangle, reach(s));
             if (!last_.found) break;
             const double f = field_.value(last_);
             if (std::abs(f) < kResidual) break;

@@ -113,7 +113,7 @@ std::optional<WallVertex> feature_on_triangle(const WallField& field, const std:
     const Vec2d start = 0.5 * (plane.flat(a.position_mm) + plane.flat(b.position_mm));
     for (int round = 0; round < kRounds; ++round) {
         if (!((q - start).norm() < kLongestMove)) return std::nullopt;
-        const WallSample s = field.sample(plane.lift(q), sign);
+        const WallSample s = field.sample(plane.lift(q), sign, a.triangle);
         if (!s.found) return std::nullopt;
         const Vec2d off(face_value(field, s, a.face), face_value(field, s, b.face));
         const double worst = off.cwiseAbs().maxCoeff();
@@ -165,7 +165,7 @@ std::optional<WallVertex> corner_in_tetrahedron(const WallField& field, const st
     const double longest = (corner[3].position_mm - corner[0].position_mm).norm();
     if (!((target - center).norm() < longest)) return std::nullopt;
     // Nearly parallel planes meet anywhere.
-    const WallSample s = field.sample(target, common_sign(corner));
+    const WallSample s = field.sample(target, common_sign(corner), result.triangle);
     if (!s.found || std::abs(field.value(s)) > kAccepted) return std::nullopt;
     const auto bary = [&](const Vec3& p) {
         const Vec3 b = inverse * (p - corner[0].position_mm);

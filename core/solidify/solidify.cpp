@@ -124,8 +124,8 @@ std::vector<std::uint32_t> voxels_shown(const SurfaceVoxels& shell, const Anchor
         for (std::size_t i = begin; i < end; ++i) {
             const auto& [a, b, c] = mesh.triangles[i];
             const Vec3 middle = (mesh.positions_mm[a] + mesh.positions_mm[b] + mesh.positions_mm[c]) / 3.0;
-            ClosestPoint closest = field.tree().closest(middle);
             const std::uint32_t anchor = anchors.triangle(wall_vertex[a]);
+            ClosestPoint closest = field.tree().closest(middle, std::numeric_limits<double>::infinity(), anchor);
             if (field.triangle_normal(closest.triangle).dot(field.triangle_normal(anchor)) < 0.0)
                 closest = {field.closest_on(anchor, middle), 0.0, anchor};
             const VoxelIndex v = index.nearest(closest.point_mm, field.triangle_normal(closest.triangle).cast<float>());

@@ -29,16 +29,17 @@ Vec3 WallField::closest_on(std::uint32_t triangle, const Vec3& p) const {
     return closest_on_triangle(p, mesh_.positions_mm[a], mesh_.positions_mm[b], mesh_.positions_mm[c]);
 }
 
-WallSample WallField::sample(const Vec3& point_mm, double sign, double reach_voxels) const {
-    WallSample s = sample_slab(point_mm, sign, reach_voxels, 0.0);
+WallSample WallField::sample(const Vec3& point_mm, double sign, std::uint32_t hint, double reach_voxels) const {
+    WallSample s = sample_slab(point_mm, sign, hint, reach_voxels, 0.0);
     if (s.found) s.pattern = pattern_at(s.closest_mm, s.triangle);
     return s;
 }
 
-WallSample WallField::sample_slab(const Vec3& point_mm, double sign, double reach_voxels, double pattern) const {
+WallSample WallField::sample_slab(const Vec3& point_mm, double sign, std::uint32_t hint, double reach_voxels,
+                                  double pattern) const {
     WallSample s;
     const double reach = reach_voxels > 0.0 ? reach_voxels : reach_voxels_ + 1.0;
-    const ClosestPoint closest = tree_.closest(point_mm, reach * voxel_mm_);
+    const ClosestPoint closest = tree_.closest(point_mm, reach * voxel_mm_, hint);
     if (!closest.found()) return s;
     s.found = true;
     s.closest_mm = closest.point_mm;

@@ -61,10 +61,13 @@ class WallField {
     [[nodiscard]] static double longest_edge() { return 1.75; }
 
     /// \param sign  of phi, where the caller knows it; 0: from the side of the closest triangle
+    /// \param hint  a triangle that is likely near, which saves time and changes nothing
     /// \param reach_voxels  the surface is known to be no farther, which saves time; 0: not known
-    [[nodiscard]] WallSample sample(const Vec3& point_mm, double sign, double reach_voxels = 0.0) const;
+    [[nodiscard]] WallSample sample(const Vec3& point_mm, double sign, std::uint32_t hint,
+                                    double reach_voxels = 0.0) const;
     /// The same where the pattern is known to be so far from its border that its value does not matter.
-    [[nodiscard]] WallSample sample_slab(const Vec3& point_mm, double sign, double reach_voxels, double pattern) const;
+    [[nodiscard]] WallSample sample_slab(const Vec3& point_mm, double sign, std::uint32_t hint, double reach_voxels,
+                                         double pattern) const;
     /// Between two nodes of one edge that are both this deep in solid the pattern does not change sign.
     [[nodiscard]] static double surely_solid() { return -2.0; }
 

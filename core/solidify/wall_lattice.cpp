@@ -88,6 +88,7 @@ class BlockDistances {
     }
 
     void measure_nodes(const Vec3& center, double to_center, double reach_voxels) {
+        std::uint32_t hint = SurfaceTree::kNoHint;
         for (std::size_t i = 0; i < kCornerNodes; ++i) {
             const Vec3 p = position(i);
             // A step from a neighbour adds no more than its length.
@@ -95,9 +96,10 @@ class BlockDistances {
             for (const auto& [axis, stride] : {std::pair{i & 3, 1U}, {(i >> 2) & 3, 4U}, {i >> 4, 16U}})
                 if (axis > 0) bound = std::min(bound, static_cast<double>(distance_[i - stride]) + 1.0);
             const double reach = std::min(bound + kRounding, reach_voxels) * lattice_.step_mm();
-            const ClosestPoint closest = field_.tree().closest(p, reach);
+            const ClosestPoint closest = field_.tree().closest(p, reach, hint);
             distance_[i] = kFar;
             if (!closest.found()) continue;
+            hint = closest.triangle;
             distance_[i] = static_cast<float>(closest.distance_mm / lattice_.step_mm());
             values_.phi[node(i)] = distance_[i];
             values_.triangle[node(i)] = closest.triangle;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -218,6 +219,7 @@ TEST_CASE("render: gives the same bytes for any number of threads", "[render][de
     RenderSettings settings;
     settings.width = 160;
     settings.height = 120;
+    settings.quick = GENERATE(false, true);
     const auto with = [&](int threads) {
         const ThreadLimit limit(threads);
         return render(mesh, {}, settings).pixels;
@@ -226,6 +228,32 @@ TEST_CASE("render: gives the same bytes for any number of threads", "[render][de
     CHECK(with(1) == one);
     CHECK(with(2) == one);
     CHECK(with(4) == one);
+}
+
+TEST_CASE("render: a quick picture has the same edges and light as a full one", "[render]") {
+    TriangleMesh mesh = testing::make_torus(5, 2, 60, 30);
+    append(mesh, make_icosphere(2.5, 4, Vec3(0, 0, 4)));
+    std::vector<Rgb8> colors(mesh.triangles.size(), Rgb8{230, 60, 40});
+    for (std::size_t t = 0; t < colors.size(); t += 7) colors[t] = {40, 60, 230};
+    RenderSettings settings;
+    settings.width = settings.height = 240;
+    const Image full = render(mesh, colors, settings);
+    settings.quick = true;
+    const Image quick = render(mesh, colors, settings);
+    double sum = 0.0;
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < full.pixels.size(); ++i) {
+        int worst = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int off = std::abs(int{full.pixels[i][k]} - int{quick.pixels[i][k]});
+            worst = std::max(worst, off);
+            sum += off;
+        }
+        far += worst > 24 ? 1 : 0;
+    }
+    // Grain of the light, of a few steps of 255; an edge that was overlooked would be off by a colour.
+    CHECK(sum / static_cast<double>(3 * full.pixels.size()) < 1.5);
+    CHECK(far < full.pixels.size() / 1000);
 }
 
 TEST_CASE("render: rejects what it cannot draw", "[render]") {
