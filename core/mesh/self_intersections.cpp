@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 
 #include "core/base/parallel.h"
 #include "core/mesh/box_tree.h"
@@ -112,7 +113,11 @@ std::vector<TrianglePair> find_self_intersections_among(const TriangleMesh& mesh
                                                         const RunControl& run, JoinedBy joined) {
     run.throw_if_stopped();
     std::vector<Box> boxes(among.size());
-    parallel_for(among.size(), kGrain, [&](std::size_t i) { boxes[i] = box_of(mesh, among[i]); });
+    std::vector<std::uint8_t> flat(among.size());
+    parallel_for(among.size(), kGrain, [&](std::size_t i) {
+        boxes[i] = box_of(mesh, among[i]);
+        flat[i] = has_area(mesh, among[i]) ? 0 : 1;
+    });
     const BoxTree tree(boxes, run);
     std::vector<std::uint8_t> chosen(mesh.triangles.size(), 0);
     for (const std::uint32_t t : among) chosen[t] = 1;
@@ -123,15 +128,16 @@ std::vector<TrianglePair> find_self_intersections_among(const TriangleMesh& mesh
         run.throw_if_stopped();
         for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<std::uint32_t>(i);
-            if (!has_area(mesh, t)) continue;
             const Box box = box_of(mesh, t);
+            std::optional<bool> counts;  // asked for once something is near
             const double reach = 0.5 * (box.max_mm - box.min_mm).norm();
             tree.near(0.5 * (box.min_mm + box.max_mm), reach, [&](std::uint32_t item) {
                 const std::uint32_t other = among[item];
                 // A pair of chosen ones comes up twice.
                 const bool once = chosen[t] == 0 ? other != t : other < t;
-                if (once && overlap(box, boxes[item]) && has_area(mesh, other) &&
-                    meets(std::min(t, other), std::max(t, other)))
+                if (!once || flat[item] != 0 || !overlap(box, boxes[item])) return reach;
+                if (!counts) counts = has_area(mesh, t);
+                if (*counts && meets(std::min(t, other), std::max(t, other)))
                     found[begin / kGrain].emplace_back(std::min(t, other), std::max(t, other));
                 return reach;
             });

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/parallel.h"
+
 namespace fretwork {
 
 CollapseMesh::CollapseMesh(const TriangleMesh& mesh)
@@ -12,21 +14,29 @@ CollapseMesh::CollapseMesh(const TriangleMesh& mesh)
       dead_(mesh.triangles.size(), 0) {
     // The corners that face an edge, filed under its lower vertex; a few each, so that partners are found by looking.
     std::vector<std::uint32_t> first(positions_.size() + 1, 0);
-    const auto low = [&](Corner c) { return std::min(vertex(next(c)), vertex(previous(c))); };
-    const auto high = [&](Corner c) { return std::max(vertex(next(c)), vertex(previous(c))); };
-    for (Corner c = 0; c < across_.size(); ++c) {
-        ++first[low(c) + 1];
-        corner_of_[vertex(c)] = c;
-    }
+    for (const Triangle& t : triangles_)
+        for (std::size_t k = 0; k < 3; ++k) ++first[std::min(t[k], t[k == 2 ? 0 : k + 1]) + 1];
     for (std::size_t v = 0; v < positions_.size(); ++v) first[v + 1] += first[v];
     std::vector<Corner> facing(across_.size());
-    std::vector<std::uint32_t> end(first.begin(), first.end() - 1);
-    for (Corner c = 0; c < across_.size(); ++c) {
-        const std::uint32_t v = low(c);
-        for (std::uint32_t i = first[v]; i < end[v] && across_[c] == kNone; ++i)
-            if (across_[facing[i]] == kNone && high(facing[i]) == high(c)) link(facing[i], c);
-        facing[end[v]++] = c;
-    }
+    Corner c = 0;
+    for (const Triangle& t : triangles_)
+        for (std::size_t k = 0; k < 3; ++k, ++c) {
+            corner_of_[t[k]] = c;
+            // Moves the start of each vertex to its end, which is where the next one started.
+            facing[first[std::min(t[k == 2 ? 0 : k + 1], t[k == 0 ? 2 : k - 1])]++] = c;
+        }
+    parallel_for(positions_.size(), 1 << 14, [&](std::size_t v) {
+        const std::span<const Corner> filed(facing.data() + (v == 0 ? 0 : first[v - 1]), facing.data() + first[v]);
+        link_partners(filed);
+    });
+}
+
+/// Links corners that face an edge with the same higher vertex, in pairs, the first two of them first.
+void CollapseMesh::link_partners(std::span<const Corner> filed) {
+    const auto high = [&](Corner c) { return std::max(vertex(next(c)), vertex(previous(c))); };
+    for (std::size_t j = 1; j < filed.size(); ++j)
+        for (std::size_t i = 0; i < j && across_[filed[j]] == kNone; ++i)
+            if (across_[filed[i]] == kNone && high(filed[i]) == high(filed[j])) link(filed[i], filed[j]);
 }
 
 void CollapseMesh::link(Corner a, Corner b) {

@@ -59,6 +59,7 @@ class CollapseMesh {
 
   private:
     [[nodiscard]] bool degree_at_least_four(Corner c) const;
+    void link_partners(std::span<const Corner> filed);
     void link(Corner a, Corner b);
 
     std::vector<Vec3> positions_;
