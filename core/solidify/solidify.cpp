@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -35,20 +36,26 @@ std::string plain(double value) {
     return text;
 }
 
+/// An edge that one triangle uses alone.
 bool has_border(const TriangleMesh& mesh) {
-    std::vector<std::uint64_t> edges;
-    edges.reserve(3 * mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint64_t a = t[k], b = t[(k + 1) % 3];
-            if (a != b) edges.push_back((std::min(a, b) << 32) | std::max(a, b));
-        }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t i = 0; i < edges.size();) {
-        std::size_t j = i;
-        while (j < edges.size() && edges[j] == edges[i]) ++j;
-        if (j - i == 1) return true;
-        i = j;
+    // The higher ends of the edges at each lower end; a few each.
+    std::vector<std::uint32_t> end(mesh.positions_mm.size() + 1, 0);
+    const auto for_each_edge = [&](const auto& visit) {
+        for (const Triangle& t : mesh.triangles)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
+                if (a != b) visit(std::min(a, b), std::max(a, b));
+            }
+    };
+    for_each_edge([&](std::uint32_t low, std::uint32_t) { ++end[low + 1]; });
+    for (std::size_t v = 0; v + 1 < end.size(); ++v) end[v + 1] += end[v];
+    std::vector<std::uint32_t> high(end.back());
+    for_each_edge([&](std::uint32_t low, std::uint32_t up) { high[end[low]++] = up; });
+    for (std::size_t v = 0, begin = 0; v + 1 < end.size(); begin = end[v++]) {
+        const std::span<std::uint32_t> ends(high.data() + begin, high.data() + end[v]);
+        std::sort(ends.begin(), ends.end());
+        for (std::size_t i = 0; i < ends.size(); ++i)
+            if ((i == 0 || ends[i - 1] != ends[i]) && (i + 1 == ends.size() || ends[i + 1] != ends[i])) return true;
     }
     return false;
 }
