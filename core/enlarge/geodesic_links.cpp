@@ -53,8 +53,8 @@ class TwoRings {
         const auto mark = [&](VoxelIndex w) {
             if (w == v) return;
             const VoxelCoord& d = shell_.coords[w];
-            const auto cell =
-                static_cast<std::size_t>((d[0] - c[0] + 2) + 5 * (d[1] - c[1] + 2) + 25 * (d[2] - c[2] + 2));
+            const int code = (d[0] - c[0] + 2) + 5 * (d[1] - c[1] + 2) + 25 * (d[2] - c[2] + 2);
+            const auto cell = static_cast<std::size_t>(code);
             const std::uint64_t bit = std::uint64_t{1} << cell % 64;
             single = single && ((marked_[cell / 64] & bit) == 0 || voxel_[cell] == w);
             marked_[cell / 64] |= bit;

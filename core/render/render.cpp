@@ -196,7 +196,8 @@ void Picture::draw_quick_tile(int x0, int y0) {
     constexpr int kSide = kTile + 2;
     std::array<Surface, kSide * kSide> middle;
     const auto at = [&](int x, int y) -> Surface& {
-        return middle[static_cast<std::size_t>((y - y0 + 1) * kSide + (x - x0 + 1))];
+        const int place = (y - y0 + 1) * kSide + (x - x0 + 1);
+        return middle[static_cast<std::size_t>(place)];
     };
     const auto direction = [&](int x, int y) -> Vec3f {
         return camera_.direction(Vec2(x + 0.5, y + 0.5)).cast<float>();

@@ -47,7 +47,8 @@ CellSetOverlap::CellSetOverlap() {
     for (int z = -2; z <= 2; ++z)
         for (int y = -2; y <= 2; ++y)
             for (int x = -2; x <= 2; ++x) {
-                Shift& s = shifts_[static_cast<std::size_t>((x + 2) + 5 * (y + 2) + 25 * (z + 2))];
+                const int code = (x + 2) + 5 * (y + 2) + 25 * (z + 2);
+                Shift& s = shifts_[static_cast<std::size_t>(code)];
                 const int by = x + 3 * y + 9 * z;
                 s.left = static_cast<std::uint8_t>(by > 0 ? by : 0);
                 s.right = static_cast<std::uint8_t>(by < 0 ? -by : 0);
