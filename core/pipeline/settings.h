@@ -58,7 +58,7 @@ struct InputOptions {
     UpAxis up = UpAxis::kZ;         ///< the model is turned so that this axis becomes z
     double scale = 1.0;             ///< factor on the model's coordinates
     std::optional<double> size_mm;  ///< longest side after scaling; instead of `scale`
-    std::string objects;            ///< of a 3MF: names, numbers or part numbers, with commas between them
+    std::string objects = {};       ///< of a 3MF: names, numbers or part numbers, with commas between them
     bool ignore_required = false;   ///< of a 3MF: read on where an unknown extension is required
 };
 

@@ -131,6 +131,22 @@ TEST_CASE("report: fits its published schema", "[formats][report]") {
     CHECK(report["iterations"].size() == 2);
 }
 
+TEST_CASE("report: of several objects fits the schema too", "[formats][report]") {
+    const Json schema = Json::parse(read_file(std::filesystem::path(FRETWORK_REPOSITORY) / "docs/report.schema.json"));
+    RunReport first = some_report(), second = some_report();
+    second.seed = 8;
+    first.paint = {PaintFormat::kBambu, {{1, 2, 3}, {255, 0, 16}}};
+    const std::vector<ObjectReport> objects = {{"lid", "L-1", "3D/3dmodel.model", 4, 2, first},
+                                               {"box", "", "3D/3dmodel.model", 5, 1, second}};
+    const Json report = Json::parse(report_json(objects));
+    check_against(schema, report, "report");
+    CHECK(report["seed"] == 7);
+    CHECK(report["objects"][1]["report"]["seed"] == 8);
+    CHECK(report["objects"][0]["id"] == 4);
+    CHECK(report["paint"]["extruders"][1] == "#FF0010");
+    for (const Json& object : report["objects"]) check_against(schema, object["report"], "object");
+}
+
 TEST_CASE("report: without times it is the same on every run", "[formats][report]") {
     RunReport quick = some_report(), slow = some_report();
     slow.seconds[0].seconds = 99.0;

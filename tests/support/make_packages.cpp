@@ -1,5 +1,6 @@
 #include "support/make_packages.h"
 
+#include <sstream>
 #include <stdexcept>
 
 #include "formats/threemf_names.h"
@@ -53,6 +54,18 @@ std::string make_tetrahedron(int id, const std::string& attributes, const std::s
                                       "v1=\"0\" v2=\"3\" v3=\"2\"", "v1=\"1\" v2=\"2\" v3=\"3\""})
         xml += "<triangle " + corners + " " + triangle_attributes + "/>\n";
     return xml + "</triangles></mesh></object>\n";
+}
+
+std::string make_mesh_object(int id, const TriangleMesh& mesh, const std::string& attributes) {
+    std::ostringstream xml;
+    xml << "<object id=\"" << id << "\" " << attributes << "><mesh><vertices>";
+    for (const Vec3& p : mesh.positions_mm)
+        xml << "<vertex x=\"" << p[0] << "\" y=\"" << p[1] << "\" z=\"" << p[2] << "\"/>\n";
+    xml << "</vertices><triangles>";
+    for (const Triangle& t : mesh.triangles)
+        xml << "<triangle v1=\"" << t[0] << "\" v2=\"" << t[1] << "\" v3=\"" << t[2] << "\"/>\n";
+    xml << "</triangles></mesh></object>\n";
+    return xml.str();
 }
 
 namespace {

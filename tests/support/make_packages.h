@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/mesh/triangle_mesh.h"
+
 namespace fretwork::testing {
 
 using Parts = std::vector<std::pair<std::string, std::string>>;
@@ -25,6 +27,9 @@ std::string make_model(const std::string& resources, const std::string& build, c
 
 /// `<object>` with a tetrahedron of volume 1/6 at the origin.
 std::string make_tetrahedron(int id, const std::string& attributes = "", const std::string& triangle_attributes = "");
+
+/// `<object>` with a mesh, in millimetres.
+std::string make_mesh_object(int id, const TriangleMesh& mesh, const std::string& attributes = "");
 
 /// What carving may write into the root model of `make_project`: nothing by default.
 struct ProjectGaps {

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/pipeline/object_settings.h"
 #include "core/pipeline/region_schema.h"
 #include "core/pipeline/setting_samples.h"
 #include "core/pipeline/settings_schema.h"
@@ -196,6 +197,40 @@ TEST_CASE("settings: regions with mistakes are refused by place", "[pipeline]") 
     refused(table_of("keeps", "sphere"), "[[keep]]");
     refused({"keep", {}, ""}, "'shape'");
     refused(table_of("loads", "sphere"), "force_n");
+}
+
+TEST_CASE("settings: [[object]] changes what it names for the objects it names", "[pipeline]") {
+    Settings settings;
+    settings.shell.thickness_mm = 2.0;
+    const SettingTable table{
+        "object",
+        {{"match", std::string("lid"), ""}, {"shell.thickness_mm", 3.0, ""}, {"synthesis.seed", std::int64_t{5}, ""}},
+        ""};
+    apply_table(settings, table);
+    apply_table(settings, {"object", {{"match", std::string("7"), ""}, {"synthesis.seed", std::int64_t{6}, ""}}, ""});
+    const std::vector<SettingTable> tables = tables_from(settings);
+    REQUIRE(tables.size() == 2);
+    CHECK(tables[0].array == "object");
+    CHECK(tables[0].entries.size() == 3);
+
+    const std::vector<std::string> lid = {"lid", "7"}, other = {"box", "1"};
+    const Settings own = settings_for_object(settings, lid);
+    CHECK(own.shell.thickness_mm == 3.0);
+    CHECK(own.synthesis.search.seed == 6);  // The later entry wins.
+    CHECK(own.objects.empty());
+    CHECK(settings_for_object(settings, other).shell.thickness_mm == 2.0);
+    CHECK(settings_for_object(settings, other).synthesis.search.seed == 1);
+
+    for (const SettingTable& wrong :
+         {SettingTable{"object", {{"synthesis.seed", std::int64_t{5}, ""}}, "s.toml: line 1"},
+          SettingTable{"object", {{"match", std::int64_t{5}, "s.toml: line 2"}}, "s.toml: line 1"},
+          SettingTable{"object", {{"match", std::string("a"), ""}, {"shell.thick", 3.0, "s.toml: line 3"}}, ""},
+          SettingTable{
+              "object", {{"match", std::string("a"), ""}, {"output.paint", std::string("prusa"), "s.toml: l"}}, ""},
+          SettingTable{"object", {{"match", std::string("a"), ""}, {"shell.thickness_mm", -3.0, "s.toml: l"}}, ""}}) {
+        Settings untouched;
+        CHECK_THROWS_WITH(apply_table(untouched, wrong), Catch::StartsWith("s.toml: l"));
+    }
 }
 
 }  // namespace
