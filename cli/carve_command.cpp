@@ -13,6 +13,7 @@
 #include "cli/run_options.h"
 #include "cli/scad_model.h"
 #include "core/base/error.h"
+#include "formats/color_channel.h"
 #include "formats/spec_toml_reader.h"
 #include "formats/threemf_editor.h"
 
@@ -108,6 +109,11 @@ void check_package(const CarveOptions& options, const CarveModel& model) {
     for (const std::string& warning : editor.warnings()) fmt::print(stderr, "fretwork: warning: {}\n", warning);
 }
 
+void print_paint(const PaintRecord& paint) {
+    for (std::size_t i = 0; i < paint.extruders.size(); ++i)
+        fmt::print(stderr, "fretwork: extruder {} prints {}\n", i + 1, hex_color(paint.extruders[i]));
+}
+
 /// In front of what is said about one of several objects.
 std::string prefix_of(const CarveModel& model, std::size_t i) {
     return model.targets.size() > 1 ? label_of(model.targets[i]) + ": " : "";
@@ -188,9 +194,12 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     Opened opened = open(options, run.slice(0.0, 0.02));
     const Settings& settings = opened.request.settings;
     check_package(options, opened.model);
+    if (settings.output.paint != PaintFormat::kNone && settings.output.colour == OutputColor::kNone)
+        throw ConstraintsNotMet("output.paint needs colours, and output.colour = none leaves none; use exemplar");
     std::vector<CarvedTarget> carved =
         carve_targets(opened.model, settings, opened.request.pictures, limits, run.slice(0.02, 0.95));
 
+    paint_targets(carved, settings.output);
     const std::vector<RunFile> pictures = opened.request.pictures.files(settings.output.source);
     std::vector<RunReport> reports;
     for (const CarvedTarget& target : carved) reports.push_back(target.report);
@@ -200,6 +209,7 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
         print_warnings(opened.model, reports);
         for (std::size_t i = 0; i < reports.size(); ++i)
             print_done(options.output, prefix_of(opened.model, i), reports[i]);
+        print_paint(reports.front().paint);
     }
     return options.strict && std::ranges::any_of(reports, below_standard) ? kBelowStandard : kDone;
 }

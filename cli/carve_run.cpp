@@ -4,8 +4,11 @@
 
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "cli/pattern_options.h"
 #include "core/base/error.h"
+#include "core/pipeline/extruder_palette.h"
 #include "core/pipeline/object_settings.h"
 
 namespace fretwork::cli {
@@ -15,6 +18,7 @@ CarveInput input_of(const CarveModel& model, CarveTarget& target, const Settings
     ChosenExemplar chosen = exemplar_of(settings, pictures);
     CarveInput input;
     input.mesh = std::move(target.mesh);
+    input.triangle_colors = std::move(target.triangle_colors);
     input.model_name = model.file.name;
     input.exemplar = std::move(chosen.exemplar);
     input.exemplar_width_mm = chosen.natural_width_mm;
@@ -87,6 +91,28 @@ std::vector<CarvedTarget> carve_targets(CarveModel& model, const Settings& setti
                         warn_of_scale(target, carved.report);
                     });
     return all;
+}
+
+void paint_targets(std::vector<CarvedTarget>& carved, const OutputOptions& output) {
+    if (output.paint == PaintFormat::kNone) return;
+    std::vector<Rgb8> colors;
+    std::vector<double> areas;
+    for (const CarvedTarget& target : carved) {
+        colors.insert(colors.end(), target.triangle_colors.begin(), target.triangle_colors.end());
+        if (target.triangle_colors.empty()) continue;
+        for (const Triangle& t : target.mesh.triangles) {
+            const auto& p = target.mesh.positions_mm;
+            areas.push_back(0.5 * (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).norm());
+        }
+    }
+    if (colors.empty())
+        throw ConstraintsNotMet(
+            "output.paint needs colours and output.colour = none leaves none; use exemplar or solid");
+    const std::vector<Rgb8> palette = extruder_palette(colors, areas, output.extruders);
+    for (CarvedTarget& target : carved) {
+        target.extruders = extruders_of(target.triangle_colors, palette);
+        target.report.paint = {output.paint, palette};
+    }
 }
 
 std::vector<RunReport> check_targets(CarveModel& model, const Settings& settings, PictureFiles& pictures,

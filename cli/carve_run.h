@@ -25,6 +25,11 @@ struct CarvedTarget {
 std::vector<CarvedTarget> carve_targets(CarveModel& model, const Settings& settings, PictureFiles& pictures,
                                         const RunLimits& limits, const RunControl& run);
 
+/// Gives every triangle the extruder of the palette that stands best for all targets together, and notes it in the
+/// reports. Does nothing where `output.paint` asks for nothing.
+/// \throws ConstraintsNotMet  there are no colours to paint.
+void paint_targets(std::vector<CarvedTarget>& carved, const OutputOptions& output);
+
 /// The same for check_carve.
 std::vector<RunReport> check_targets(CarveModel& model, const Settings& settings, PictureFiles& pictures,
                                      const RunLimits& limits, const RunControl& run);

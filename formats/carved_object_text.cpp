@@ -162,6 +162,7 @@ std::string CarvedObjectText::triangles(const ModelDialect& dialect, std::size_t
     const std::string open = "<" + dialect.core + "triangle v1=\"";
     const std::string group = number_attribute("pid", color_group_);
     const TrianglePaint& paint = object_.paint;
+    const bool painted = paint.format != PaintFormat::kNone && !paint.extruders.empty();
     const std::string paint_name =
         paint.format == PaintFormat::kPrusa ? dialect.slicer + "mmu_segmentation" : "paint_color";
     std::string xml;
@@ -176,7 +177,7 @@ std::string CarvedObjectText::triangles(const ModelDialect& dialect, std::size_t
             xml += group;
             for (const std::string_view corner : {" p1=\"", " p2=\"", " p3=\""}) append_attribute(xml, corner, index);
         }
-        if (!paint.extruders.empty()) xml += xml_attribute(paint_name, paint_state_text(paint.extruders[t]));
+        if (painted) xml += xml_attribute(paint_name, paint_state_text(paint.extruders[t]));
         xml += "/>\n";
     }
     return xml;

@@ -20,7 +20,7 @@ std::string folded(std::string_view text) {
     return lower;
 }
 
-std::string with_slash(std::string target) {
+std::string with_slash(const std::string& target) {
     return target.starts_with('/') ? target : "/" + target;
 }
 

@@ -23,7 +23,6 @@ namespace {
 using threemf::ModelEdit;
 using threemf::ModelLayout;
 using threemf::ObjectKey;
-using threemf::without_slash;
 
 constexpr std::uint64_t kMaxEditedBytes = 1 << 30;
 constexpr std::uint64_t kMaxSmallPartBytes = 8 << 20;
@@ -190,9 +189,7 @@ class EditRun {
         }
         if (root) {
             model.add_metadata(metadata_of(edit_.record));
-            if (painted)
-                for (const std::string_view version : threemf::kSlic3rVersions)
-                    model.add_metadata({{std::string(version), "1"}});
+            if (painted) add_slicer_versions(part.layout, model);
         }
         writer_.put(name, model.finish().deflated(run_));
         if (sheets.empty()) return;
@@ -242,6 +239,17 @@ class EditRun {
     }
 
   private:
+    /// Where a slicer has noted its own, those stay.
+    static void add_slicer_versions(const ModelLayout& layout, ModelEdit& model) {
+        for (const std::string_view version : threemf::kSlic3rVersions) {
+            const std::string_view name = version.substr(version.find(':') + 1);
+            const bool noted = std::ranges::any_of(layout.metadata, [&](const threemf::MetadataPlace& place) {
+                return place.space == threemf::kSlic3r && place.name == name;
+            });
+            if (!noted) model.add_metadata({{std::string(version), "1"}});
+        }
+    }
+
     void add_sheets(const CarvedObjectText& text, std::vector<Relation>& relations) {
         for (auto& [path, png] : text.sheets()) {
             writer_.put_stored(path.substr(1), png);

@@ -16,11 +16,6 @@ namespace fretwork::threemf {
 
 using ResourceId = std::uint32_t;
 
-/// Colour group or base materials: what pid and p1..p3 point into.
-struct ColorTable {
-    std::vector<Rgb8> colors;
-};
-
 /// A placed object: of `<component>` or of `<item>`.
 struct Instance {
     ResourceId object = 0;
@@ -71,7 +66,6 @@ struct VolumeProperty {
 struct Model {
     LengthUnit unit = LengthUnit::kMillimeter;
     std::vector<std::pair<std::string, std::string>> metadata;
-    std::map<ResourceId, ColorTable> color_tables;
     std::map<ResourceId, Object> objects;
     std::map<ResourceId, Image3d> images;
     std::map<ResourceId, ImageFunction> functions;

@@ -19,7 +19,6 @@ namespace {
 
 constexpr std::size_t kMaxItems = 1 << 16;  ///< of objects, components, build items, metadata, colour tables
 constexpr std::size_t kMaxTextBytes = 1 << 20;
-constexpr std::size_t kMaxColors = 1 << 24;
 constexpr std::size_t kStopEvery = 1 << 14;
 
 /// Where in the document we are; kSkip stands for anything that is not read, with all it holds.
@@ -29,8 +28,7 @@ enum class Within {
     kModel,
     kMetadata,
     kResources,
-    kBaseMaterials,
-    kColorGroup,
+    kMaterialGroup,
     kObject,
     kMesh,
     kVertices,
@@ -47,8 +45,11 @@ enum class Within {
 
 class ModelReader::Handler : public XmlHandler {
   public:
-    Handler(std::string_view source, bool ignore_required, const RunControl& run)
-        : xml_(*this, source), ignore_required_(ignore_required), run_(run) {}
+    Handler(std::string_view source, const ModelReadOptions& options, const RunControl& run)
+        : xml_(*this, source),
+          ignore_required_(options.ignore_required),
+          run_(run),
+          materials_(xml_, options.read_part) {}
 
     XmlReader& xml() { return xml_; }
 
@@ -60,6 +61,7 @@ class ModelReader::Handler : public XmlHandler {
         if (skipped_properties_ > 0)
             model_.warnings.push_back(std::to_string(skipped_properties_) +
                                       " triangles with properties that are not colours");
+        model_.warnings.insert(model_.warnings.end(), materials_.warnings().begin(), materials_.warnings().end());
         return std::move(model_);
     }
 
@@ -112,11 +114,10 @@ class ModelReader::Handler : public XmlHandler {
                 break;
             case Within::kResources:
                 if (e.name == "object") return start_object(e);
-                if (e.name == "basematerials") return start_table(e, Within::kBaseMaterials);
+                if (Materials::is_group(e)) return start_group(e);
                 break;
-            case Within::kBaseMaterials:
-                if (e.name == "base") return add_color(e, "displaycolor");
-                break;
+            case Within::kMaterialGroup:
+                return add_material(e);
             case Within::kObject:
                 if (e.name == "mesh") return start_mesh(e);
                 if (e.name == "components") return Within::kComponents;
@@ -144,9 +145,11 @@ class ModelReader::Handler : public XmlHandler {
     }
 
     Within enter_material(Within parent, const XmlElement& e) {
-        if (parent == Within::kResources && e.name == "colorgroup") return start_table(e, Within::kColorGroup);
-        if (parent == Within::kColorGroup && e.name == "color") return add_color(e, "color");
-        return Within::kSkip;
+        if (parent == Within::kResources && Materials::is_group(e)) return start_group(e);
+        if (parent == Within::kMaterialGroup) return add_material(e);
+        if (parent != Within::kResources || e.name != "texture2d") return Within::kSkip;
+        materials_.add_texture(e, new_id(e));
+        return Within::kLeaf;
     }
 
     Within enter_volumetric(Within parent, const XmlElement& e) {
@@ -202,14 +205,13 @@ class ModelReader::Handler : public XmlHandler {
         return Within::kMetadata;
     }
 
-    Within start_table(const XmlElement& e, Within kind) {
-        table_ = &model_.color_tables[new_id(e)];
-        return kind;
+    Within start_group(const XmlElement& e) {
+        materials_.start_group(e, new_id(e));
+        return Within::kMaterialGroup;
     }
 
-    Within add_color(const XmlElement& e, std::string_view attribute) {
-        if (table_->colors.size() >= kMaxColors) xml_.fail("over 16777216 colours", "fewer");
-        table_->colors.push_back(values_.color(values_.need(e, attribute)));
+    Within add_material(const XmlElement& e) {
+        materials_.add_entry(e);
         return Within::kLeaf;
     }
 
@@ -220,12 +222,11 @@ class ModelReader::Handler : public XmlHandler {
         object_->name = e.find("name").value_or("");
         object_->type = e.find("type").value_or("model");
         object_->part_number = e.find("partnumber").value_or("");
-        const auto pid = e.find("pid");
         default_color_ = std::nullopt;
-        if (pid) {
-            const std::int64_t group = values_.whole(*pid, "pid", 1, kMaxId);
+        object_group_ = e.find("pid") ? values_.id(e, "pid") : 0;
+        if (object_group_ != 0) {
             const std::int64_t index = values_.whole(e.find("pindex").value_or("0"), "pindex", 0, kMaxId);
-            default_color_ = color_at(group, index);
+            default_color_ = materials_.color_of(object_group_, {index, index, index});
         }
         return Within::kObject;
     }
@@ -273,34 +274,17 @@ class ModelReader::Handler : public XmlHandler {
         if (colored_) colors.push_back(color.value_or(kUncolored));
     }
 
-    /// The mean of the corners' colours; the object's own colour where the triangle has none.
+    /// The object's own colour where the triangle has none.
     std::optional<Rgb8> triangle_color(const XmlElement& e) {
-        const auto pid = e.find("pid"), p1 = e.find("p1");
-        if (!pid || !p1) return default_color_;
-        const std::int64_t group = values_.whole(*pid, "pid", 1, kMaxId);
-        const auto first = color_at(group, values_.whole(*p1, "p1", 0, kMaxId));
-        if (!first) {
-            ++skipped_properties_;
-            return default_color_;
-        }
-        const auto p2 = e.find("p2"), p3 = e.find("p3");
-        if (!p2 || !p3 || (*p2 == *p1 && *p3 == *p1)) return first;
-        const auto second = color_at(group, values_.whole(*p2, "p2", 0, kMaxId));
-        const auto third = color_at(group, values_.whole(*p3, "p3", 0, kMaxId));
-        Rgb8 mean{};
-        for (std::size_t k = 0; k < 3; ++k)
-            mean[k] = static_cast<std::uint8_t>(((*first)[k] + (*second)[k] + (*third)[k] + 1) / 3);
-        return mean;
-    }
-
-    /// Nothing when the group holds no colours (textures, composites).
-    std::optional<Rgb8> color_at(std::int64_t group, std::int64_t index) const {
-        const auto table = model_.color_tables.find(static_cast<ResourceId>(group));
-        if (table == model_.color_tables.end()) return std::nullopt;
-        const std::vector<Rgb8>& colors = table->second.colors;
-        if (index >= static_cast<std::int64_t>(colors.size()))
-            xml_.fail("colour index " + std::to_string(index), "one below " + std::to_string(colors.size()));
-        return colors[static_cast<std::size_t>(index)];
+        const auto p1 = e.find("p1"), p2 = e.find("p2"), p3 = e.find("p3");
+        const ResourceId group = e.find("pid") ? values_.id(e, "pid") : object_group_;
+        if (group == 0 || !p1) return default_color_;
+        const std::int64_t first = values_.whole(*p1, "p1", 0, kMaxId);
+        const bool shaded = p2 && p3;
+        const auto color = materials_.color_of(group, {first, shaded ? values_.whole(*p2, "p2", 0, kMaxId) : first,
+                                                       shaded ? values_.whole(*p3, "p3", 0, kMaxId) : first});
+        if (!color) ++skipped_properties_;
+        return color ? color : default_color_;
     }
 
     /// Triangles may come before the vertices in the text, so indices are judged at the end.
@@ -376,15 +360,16 @@ class ModelReader::Handler : public XmlHandler {
     ThreemfValues values_{xml_};
     bool ignore_required_;
     const RunControl& run_;
+    Materials materials_;
     Model model_;
     std::vector<Within> within_;
     std::set<ResourceId> ids_;
     std::string metadata_name_, text_;
     // What is being filled; map nodes do not move.
-    ColorTable* table_ = nullptr;
     Object* object_ = nullptr;
     Image3d* image_ = nullptr;
     std::vector<VolumeProperty>* volume_ = nullptr;
+    ResourceId object_group_ = 0;
     std::optional<Rgb8> default_color_;
     bool colored_ = false;
     bool model_seen_ = false;
@@ -393,8 +378,8 @@ class ModelReader::Handler : public XmlHandler {
     std::size_t degenerate_triangles_ = 0;
 };
 
-ModelReader::ModelReader(std::string_view source, bool ignore_required, const RunControl& run)
-    : handler_(std::make_unique<Handler>(source, ignore_required, run)) {}
+ModelReader::ModelReader(std::string_view source, const ModelReadOptions& options, const RunControl& run)
+    : handler_(std::make_unique<Handler>(source, options, run)) {}
 ModelReader::~ModelReader() = default;
 
 void ModelReader::feed(std::string_view block) {
@@ -407,7 +392,7 @@ Model ModelReader::finish() {
 }
 
 Model read_model(std::string_view xml, std::string_view source, const RunControl& run) {
-    ModelReader reader(source, /*ignore_required=*/false, run);
+    ModelReader reader(source, {}, run);
     reader.feed(xml);
     return reader.finish();
 }

@@ -5,17 +5,22 @@
 #include <string_view>
 
 #include "core/base/run_control.h"
+#include "formats/threemf_materials.h"
 #include "formats/threemf_model.h"
 
 namespace fretwork::threemf {
 
-/// Takes the part block by block. Understands core, materials (colour groups), production (paths) and
+struct ModelReadOptions {
+    bool ignore_required = false;  ///< an unknown required extension is a warning
+    ReadPart read_part;            ///< for textures; may be empty: they have no colour then
+};
+
+/// Takes the part block by block. Understands core, materials, production (paths) and
 /// image stacks of the volumetric extension; ignores what it does not know, unless the model requires
 /// it.
 class ModelReader {
   public:
-    /// \param ignore_required  an unknown required extension is a warning
-    ModelReader(std::string_view source, bool ignore_required, const RunControl& run);
+    ModelReader(std::string_view source, const ModelReadOptions& options, const RunControl& run);
     ~ModelReader();
 
     /// \throws InvalidInput  naming the line: XML that is not well-formed; an unknown required

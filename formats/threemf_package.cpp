@@ -9,6 +9,7 @@ namespace fretwork::threemf {
 namespace {
 
 constexpr std::uint64_t kMaxRelationsBytes = 8 << 20;
+constexpr std::uint64_t kMaxTextureBytes = 64 << 20;
 constexpr std::string_view kRelationsSpace = "http://schemas.openxmlformats.org/package/2006/relationships";
 
 /// Picks the target of the first relationship of the wanted type.
@@ -57,7 +58,9 @@ void Package::find_model_part() {
 }
 
 Model Package::read_model(std::string_view part, bool ignore_required, const RunControl& run) const {
-    ModelReader reader(source_ + ": " + std::string(without_slash(part)), ignore_required, run);
+    const ModelReadOptions options{ignore_required,
+                                   [this](std::string_view path) { return read_part(path, kMaxTextureBytes); }};
+    ModelReader reader(source_ + ": " + std::string(without_slash(part)), options, run);
     zip_.read_blocks(without_slash(part), [&](std::string_view block) {
         run.throw_if_stopped();
         reader.feed(block);

@@ -47,12 +47,12 @@ ResourceId ThreemfValues::id(const XmlElement& element, std::string_view attribu
     return static_cast<ResourceId>(whole(need(element, attribute), attribute, 1, kMaxId));
 }
 
-Rgb8 ThreemfValues::color(std::string_view text) const {
+Rgba8 ThreemfValues::color(std::string_view text) const {
     bool sound = (text.size() == 7 || text.size() == 9) && text.front() == '#';
     for (std::size_t i = 1; sound && i < text.size(); ++i) sound = hex_digit(text[i]) < 16;
     if (!sound) xml_.fail("colour " + in_quotes(text), "#RRGGBB or #RRGGBBAA");
-    Rgb8 color{};
-    for (std::size_t k = 0; k < 3; ++k)
+    Rgba8 color = {0, 0, 0, 255};
+    for (std::size_t k = 0; 2 * k + 2 < text.size(); ++k)
         color[k] = static_cast<std::uint8_t>(16 * hex_digit(text[1 + 2 * k]) + hex_digit(text[2 + 2 * k]));
     return color;
 }

@@ -29,8 +29,8 @@ class ThreemfValues {
     /// A number of a resource, 1 to 2^31 - 1, in an attribute that must be there.
     [[nodiscard]] ResourceId id(const XmlElement& element, std::string_view attribute) const;
 
-    /// #RRGGBB or #RRGGBBAA; the opacity is not used.
-    [[nodiscard]] Rgb8 color(std::string_view text) const;
+    /// #RRGGBB or #RRGGBBAA.
+    [[nodiscard]] Rgba8 color(std::string_view text) const;
 
     /// Twelve numbers that do not flatten space.
     [[nodiscard]] Eigen::Affine3d transform(std::string_view text) const;

@@ -128,6 +128,24 @@ CountSelfIntersections counts_self_intersections(const Settings& settings) {
     return settings.synthesis.preset == Preset::kDraft ? CountSelfIntersections::kNo : CountSelfIntersections::kYes;
 }
 
+/// Colours of the file's triangles for those of the repaired mesh.
+std::vector<Rgb8> kept_colors(const CarveInput& input, const std::vector<std::uint32_t>& source_triangles) {
+    std::vector<Rgb8> colors;
+    if (input.triangle_colors.empty()) return colors;
+    if (input.triangle_colors.size() != input.mesh.triangles.size())
+        throw InvalidInput(fmt::format("found {} colours, expected {}, one per triangle", input.triangle_colors.size(),
+                                       input.mesh.triangles.size()));
+    for (const std::uint32_t t : source_triangles) colors.push_back(input.triangle_colors[t]);
+    return colors;
+}
+
+std::vector<Rgb8> voxel_colors(const SurfaceVoxels& shell, std::vector<Rgb8> pattern,
+                               const std::vector<std::uint8_t>& keep, const std::vector<Rgb8>& kept) {
+    for (std::size_t v = 0; !kept.empty() && v < shell.size(); ++v)
+        if (keep[v] != 0) pattern[v] = kept[shell.triangles[v]];
+    return pattern;
+}
+
 std::size_t component_count(const SurfaceVoxels& shell) {
     return shell.components.empty() ? 0 : std::ranges::max(shell.components) + std::size_t{1};
 }
@@ -155,6 +173,7 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     const Settings local =
         with_triangles_of(surface.source_triangles, {input.mesh.triangles.size(), input.named_triangles}, settings);
     const RegionField keep_field = keep_regions(result.surface, local);
+    const std::vector<Rgb8> kept = kept_colors(input, surface.source_triangles);
 
     result.shell =
         plan.run("voxelize", [&](const RunControl& r) { return voxelize(result.surface, resolved.voxelize, r); });
@@ -183,11 +202,11 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     });
     note_pattern(shell, enlarged, report);
     result.solid = std::move(enlarged.solid);
-    result.voxel_colors = read_color(input.exemplar, synthesizer.frames());
+    result.voxel_colors = voxel_colors(shell, read_color(input.exemplar, synthesizer.frames()), keep, kept);
 
     result.carved = plan.run("solidify", [&](const RunControl& r) {
         const PatternField pattern(result.surface, shell, links, result.solid, synthesizer.frames(), input.exemplar,
-                                   keep_field, r.slice(0.0, 0.1));
+                                   keep_field, r.slice(0.0, 0.1), kept);
         return solidify(result.surface, shell, pattern, resolved.solidify, r.slice(0.1, 1.0));
     });
     const MeshReport carved = plan.run("verify", [&](const RunControl& r) {

@@ -24,6 +24,7 @@ struct CarveInput {
     std::optional<double> exemplar_width_mm;           ///< natural width of the exemplar, if it has one
     std::string exemplar_name;                         ///< for messages and the report
     std::vector<NamedTriangles> named_triangles = {};  ///< faces and parts of `mesh` that regions may name
+    std::vector<Rgb8> triangle_colors = {};  ///< sRGB, one per triangle, or empty; regions that are kept show them
 };
 
 /// What this run may use. Does not change what comes out.

@@ -259,14 +259,20 @@ struct PatternField::Impl {
 
 PatternField::PatternField(const TriangleMesh& mesh, const SurfaceVoxels& shell, const GeodesicLinks& links,
                            const SolidStates& solid, const TexelFrames& frames, const Exemplar& exemplar,
-                           const RegionField& keep, const RunControl& run) {
+                           const RegionField& keep, const RunControl& run, std::span<const Rgb8> kept_colors) {
+    if (!kept_colors.empty() && kept_colors.size() != mesh.triangles.size())
+        throw InvalidInput("pattern field: " + std::to_string(kept_colors.size()) + " kept colours for " +
+                           std::to_string(mesh.triangles.size()) + " triangles");
     if (solid.size() != shell.size() || frames.size() != shell.size())
         throw InvalidInput("pattern field: " + std::to_string(solid.size()) + " states and " +
                            std::to_string(frames.size()) + " frames for " + std::to_string(shell.size()) + " voxels");
     const auto pattern = std::make_shared<const VoxelPattern>(mesh, shell, links, solid, frames, exemplar, keep, run);
     impl_ = std::make_unique<const Impl>(
         Impl{[pattern](const Vec3& p, std::uint32_t t) { return pattern->signed_distance_voxels(p, t); },
-             [pattern](const Vec3& p, std::uint32_t t) { return pattern->color(p, t); }});
+             [pattern, kept_colors, &keep](const Vec3& p, std::uint32_t t) {
+                 const bool kept = !kept_colors.empty() && !keep.empty() && keep.signed_distance_mm(p, t) <= 0.0;
+                 return kept ? kept_colors[t] : pattern->color(p, t);
+             }});
 }
 
 PatternField::PatternField(std::function<double(const Vec3&, std::uint32_t)> signed_distance_voxels,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 
 #include "core/base/run_control.h"
 #include "core/enlarge/geodesic_links.h"
@@ -29,10 +30,11 @@ class PatternField {
     /// \param mesh   from which `shell` was voxelised: a point's triangle tells which sheet it is on
     /// \param links  of the shell, by `link_two_rings`
     /// \param keep   regions that stay solid up to a clean border; may be empty
-    /// \throws InvalidInput  states or frames that do not match the shell
+    /// \param kept_colors  what those regions show, one per triangle of `mesh`; empty: the exemplar's colours
+    /// \throws InvalidInput  states, frames or colours that do not match the shell and the mesh
     PatternField(const TriangleMesh& mesh, const SurfaceVoxels& shell, const GeodesicLinks& links,
                  const SolidStates& solid, const TexelFrames& frames, const Exemplar& exemplar, const RegionField& keep,
-                 const RunControl& run = {});
+                 const RunControl& run = {}, std::span<const Rgb8> kept_colors = {});
     /// A pattern known by formula; the functions get a surface point and its triangle.
     PatternField(std::function<double(const Vec3&, std::uint32_t)> signed_distance_voxels,
                  std::function<Rgb8(const Vec3&, std::uint32_t)> color);

@@ -1,9 +1,13 @@
 // 3MF in, 3MF out: which objects are carved, and that nothing else is touched.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/run_program.h"
 #include "core/mesh/mesh_report.h"
+#include "formats/image_file.h"
 #include "formats/mesh_file.h"
 #include "formats/threemf_objects.h"
 #include "formats/threemf_reader.h"
@@ -187,28 +191,126 @@ TEST_CASE("cli: a 3MF carved into another format shows what the carved 3MF shows
     CHECK(volume_mm3(mesh.mesh) == Approx(volume_mm3(package.mesh)).epsilon(1e-5));
 }
 
-TEST_CASE("cli: PrusaSlicer loads what it wrote itself after it was carved", "[cli][programs][threemf]") {
-    if (std::system("command -v prusa-slicer > /dev/null 2>&1") != 0) {
-        WARN("prusa-slicer is not installed: skipped");
-        return;
+TEST_CASE("cli: what is kept of a coloured model keeps its colours", "[cli][threemf]") {
+    const TemporaryFolder folder;
+    const TriangleMesh ball = make_icosphere(15.0, 4);
+    std::string object = make_mesh_object(1, ball, "pid=\"9\" pindex=\"0\"");
+    spit(folder / "in.3mf",
+         make_package(make_model("<m:colorgroup id=\"9\"><m:color color=\"#1020FF\"/></m:colorgroup>" + object,
+                                 "<item objectid=\"1\"/>")));
+    std::vector<std::string> line = carve_line({folder / "in.3mf", "-o", folder / "out.3mf"});
+    spit(folder / "s.toml",
+         "[exemplar]\npattern = \"cells\"\n[[keep]]\nshape = \"half_space\"\n"
+         "point_mm = [0, 0, -5]\noutward = [0, 0, 1]\n");
+    *std::ranges::find(line, "cells") = folder / "s.toml";
+    const ProgramResult run = run_program(line);
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    const MeshFile carved = read_mesh(std::filesystem::path(folder / "out.3mf"));
+    const Rgb8 kept = {0x10, 0x20, 0xFF};
+    std::size_t below = 0, above = 0;
+    for (std::size_t t = 0; t < carved.mesh.triangles.size(); ++t) {
+        Vec3 middle = Vec3::Zero();
+        for (const std::uint32_t v : carved.mesh.triangles[t]) middle += carved.mesh.positions_mm[v] / 3.0;
+        // A voxel is about a millimetre here.
+        if (middle[2] < -6.5) {
+            ++below;
+            CHECK(carved.triangle_colors[t] == kept);
+        } else if (middle[2] > -3.5) {
+            ++above;
+            CHECK(carved.triangle_colors[t] != kept);
+        }
     }
+    CHECK(below > 20);
+    CHECK(above > 100);
+}
+
+bool slicer_is_there() {
+    if (std::system("command -v prusa-slicer > /dev/null 2>&1") == 0) return true;
+    WARN("prusa-slicer is not installed: skipped");
+    return false;
+}
+
+std::string slicer(const TemporaryFolder& folder, const std::string& arguments) {
+    const std::string line = "timeout 110 prusa-slicer " + arguments + " > " + (folder / "said") + " 2>&1";
+    CHECK(std::system(line.c_str()) == 0);
+    return slurp(folder / "said");
+}
+
+TEST_CASE("cli: PrusaSlicer loads what it wrote itself after it was carved", "[cli][programs][threemf]") {
+    if (!slicer_is_there()) return;
     const TemporaryFolder folder;
     spit(folder / "ball.stl", write_mesh({make_icosphere(15.0, 3)}, MeshFormat::kStl));
-    const auto slicer = [&](const std::string& arguments, const std::string& out) {
-        const std::string line = "timeout 110 prusa-slicer " + arguments + " > " + (folder / out) + " 2>&1";
-        CHECK(std::system(line.c_str()) == 0);
-        return slurp(folder / out);
-    };
-    slicer("--export-3mf -o " + (folder / "p.3mf") + " " + (folder / "ball.stl"), "log");
+    slicer(folder, "--export-3mf -o " + (folder / "p.3mf") + " " + (folder / "ball.stl"));
     const ProgramResult run =
         run_program(carve_line({folder / "p.3mf", "-o", folder / "c.3mf", "--objects", "ball.stl"}));
     CAPTURE(run.err);
     REQUIRE(run.exit_code == 0);
     const std::size_t triangles = read_mesh(std::filesystem::path(folder / "c.3mf")).mesh.triangles.size();
-    const std::string info = slicer("--info " + (folder / "c.3mf"), "info");
+    const std::string info = slicer(folder, "--info " + (folder / "c.3mf"));
     CAPTURE(info);
     CHECK(info.find("number_of_facets = " + std::to_string(triangles) + "\n") != info.npos);
     CHECK(info.find("manifold = yes") != info.npos);
+}
+
+/// The values of an attribute, in the order of the root model.
+std::vector<std::string> values_of(const std::string& package, const std::string& attribute) {
+    const std::string bytes = slurp(package);
+    const std::string xml = ZipReader(bytes, package).read(kRoot, 1 << 28);
+    std::vector<std::string> values;
+    const std::string mark = " " + attribute + "=\"";
+    for (std::size_t at = xml.find(mark); at != xml.npos; at = xml.find(mark, at + 1)) {
+        const std::size_t begin = at + mark.size();
+        values.push_back(xml.substr(begin, xml.find('"', begin) - begin));
+    }
+    return values;
+}
+
+TEST_CASE("cli: painted extruders survive a round trip through PrusaSlicer", "[cli][programs][threemf]") {
+    if (!slicer_is_there()) return;
+    const TemporaryFolder folder;
+    spit(folder / "ball.off", write_mesh({make_icosphere(15.0, 3)}, MeshFormat::kOff));
+    // Six clear colours in columns, dark enough to be solid all over but for a few holes.
+    Image picture;
+    picture.width = picture.height = 96;
+    const std::vector<Rgba8> colors = {{120, 0, 0, 255},  {0, 110, 0, 255},   {0, 0, 130, 255},
+                                       {110, 90, 0, 255}, {100, 0, 110, 255}, {20, 20, 20, 255}};
+    for (std::size_t i = 0; i < 96 * 96; ++i) {
+        const bool hole = (i % 96) % 48 < 12 && (i / 96) % 48 < 12;
+        picture.pixels.push_back(hole ? Rgba8{255, 255, 255, 255} : colors[(i % 96) / 16]);
+    }
+    write_image(std::filesystem::path(folder / "columns.png"), picture);
+    for (const char* format : {"prusa", "bambu"}) {
+        CAPTURE(format);
+        const ProgramResult run = run_program({"carve",        folder / "ball.off",
+                                               "--exemplar",   folder / "columns.png",
+                                               "--width-mm",   "28",
+                                               "--preset",     "draft",
+                                               "--resolution", "64",
+                                               "-D",           "structure.max_iterations=1",
+                                               "--paint",      format,
+                                               "--extruders",  "5",
+                                               "-o",           folder / "painted.3mf",
+                                               "--summary",    folder / "out.json"});
+        CAPTURE(run.err);
+        REQUIRE(run.exit_code == 0);
+        const Json report = Json::parse(slurp(folder / "out.json"));
+        CHECK(report["paint"]["slicer"] == format);
+        CHECK(report["paint"]["extruders"].size() == 5);
+        CHECK(run.err.find("extruder 5 prints #") != run.err.npos);
+        const bool prusa = std::string(format) == "prusa";
+        const std::vector<std::string> written =
+            values_of(folder / "painted.3mf", prusa ? "slic3rpe:mmu_segmentation" : "paint_color");
+        CHECK(written.size() == report["mesh"]["triangles"]);
+        CHECK(std::set<std::string>(written.begin(), written.end()) ==
+              std::set<std::string>{"4", "8", "0C", "1C", "2C"});
+        if (!prusa) continue;  // PrusaSlicer 2.5 does not read the other one.
+        slicer(folder, "--export-3mf -o " + (folder / "back.3mf") + " " + (folder / "painted.3mf"));
+        CHECK(values_of(folder / "back.3mf", "slic3rpe:mmu_segmentation") == written);
+    }
+    const ProgramResult plain = run_program({"carve", folder / "ball.off", "--pattern", "cells", "--paint", "prusa",
+                                             "-D", "output.colour=none", "-o", folder / "none.3mf"});
+    CHECK(plain.exit_code == 3);
 }
 
 }  // namespace

@@ -235,6 +235,35 @@ TEST_CASE("carved 3MF: several objects keep their own data", "[formats][threemf]
     CHECK(differ);
 }
 
+TEST_CASE("carved 3MF: extruders stand on triangles as slicers write them", "[formats][threemf]") {
+    // The codes that PrusaSlicer 2.5 reads and writes for whole triangles.
+    const std::vector<std::string> codes = {"4", "8", "0C", "1C", "2C", "3C", "4C"};
+    for (std::size_t i = 0; i < codes.size(); ++i) CHECK(paint_state_text(static_cast<int>(i) + 1) == codes[i]);
+    CHECK(paint_state_text(16) == "DC");
+    CHECK_THROWS_AS(paint_state_text(17), InvalidInput);
+    CHECK_THROWS_AS(paint_state_text(0), InvalidInput);
+
+    const TriangleMesh box = make_box(Vec3(0, 0, 0), Vec3(1, 1, 1));
+    std::vector<std::uint8_t> extruders(box.triangles.size(), 1);
+    extruders[4] = 3;
+    const auto painted = [&](PaintFormat format) {
+        CarvedPackage package;
+        package.objects.push_back({box, {}, "box", nullptr, nullptr, {format, extruders}});
+        return model_of(write_carved_threemf(package));
+    };
+    CHECK_THAT(painted(PaintFormat::kPrusa),
+               Catch::Contains("xmlns:slic3rpe=\"http://schemas.slic3r.org/3mf/2017/06\"") &&
+                   Catch::Contains("<metadata name=\"slic3rpe:Version3mf\">1</metadata>") &&
+                   Catch::Contains("<metadata name=\"slic3rpe:MmPaintingVersion\">1</metadata>") &&
+                   Catch::Contains(" slic3rpe:mmu_segmentation=\"0C\"/>") && !Catch::Contains("paint_color"));
+    CHECK_THAT(painted(PaintFormat::kBambu), Catch::Contains(" paint_color=\"0C\"/>") &&
+                                                 Catch::Contains(" paint_color=\"4\"/>") &&
+                                                 !Catch::Contains("slic3rpe"));
+    CHECK_THAT(painted(PaintFormat::kNone), !Catch::Contains("slic3rpe") && !Catch::Contains("paint_color"));
+    extruders.pop_back();
+    CHECK_THROWS_WITH(painted(PaintFormat::kPrusa), Catch::Contains("11 extruders"));
+}
+
 TEST_CASE("carved 3MF: the bytes do not depend on threads or the time zone", "[formats][determinism]") {
     const RandomShell random(3);
     const VoxelData data = random.data();

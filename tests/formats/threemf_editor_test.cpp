@@ -224,6 +224,24 @@ TEST_CASE("3mf editor: the package's picture is replaced, other pictures stay", 
     CHECK_THAT(part_of(pictured, "[Content_Types].xml"), Catch::Contains("Extension=\"png\""));
 }
 
+TEST_CASE("3mf editor: paint is written as the part spells the slicer's namespace", "[formats][threemf]") {
+    const Carving carving;
+    const std::vector<std::uint8_t> extruders(12, 2);
+    const auto painted = [&](const std::string& input, threemf::ResourceId id) {
+        ThreemfEdit edit;
+        edit.objects.push_back(
+            {{kRoot, id}, {carving.box, {}, "", nullptr, nullptr, {PaintFormat::kPrusa, extruders}}});
+        return part_of(ThreemfEditor(input, "p", {{kRoot, id}}).write(edit), kRoot);
+    };
+    // The project declares slic3rpe itself; a model that does not gets it, with what the slicer needs to know.
+    const std::string in_project = painted(make_project(), 5);
+    CHECK_THAT(in_project, Catch::Contains("v3=\"0\" slic3rpe:mmu_segmentation=\"8\"/>") &&
+                               Catch::Contains("<metadata name=\"slic3rpe:MmPaintingVersion\">1</metadata>"));
+    CHECK(in_project.find("xmlns:slic3rpe=") == in_project.rfind("xmlns:slic3rpe="));
+    const std::string bare = make_package(make_model(make_tetrahedron(1), "<item objectid=\"1\"/>"));
+    CHECK_THAT(painted(bare, 1), Catch::Contains("xmlns:slic3rpe=\"http://schemas.slic3r.org/3mf/2017/06\""));
+}
+
 TEST_CASE("3mf editor: PrusaSlicer's runs of triangles follow the carved mesh", "[formats][threemf]") {
     const std::string config =
         "<config>\n <object id=\"1\" instances_count=\"1\"><metadata type=\"object\" key=\"name\" value=\"a\"/>\n"

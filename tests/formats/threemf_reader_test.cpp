@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "formats/png_writer.h"
 #include "support/make_meshes.h"
 #include "support/make_packages.h"
 
@@ -90,6 +91,63 @@ TEST_CASE("3mf: colours of groups and base materials, of triangles and of object
     REQUIRE(whole.triangle_colors.size() == 8);
     CHECK(whole.triangle_colors[7] == Rgb8{255, 0, 0});
     CHECK(whole.triangle_colors[0] != whole.triangle_colors[7]);
+}
+
+TEST_CASE("3mf: mixed materials and layers show one colour per triangle", "[formats][threemf]") {
+    const std::string tables =
+        "<basematerials id=\"8\"><base name=\"a\" displaycolor=\"#FF0000\"/><base name=\"b\" displaycolor=\"#0000FF\"/>"
+        "</basematerials><m:compositematerials id=\"9\" matid=\"8\" matindices=\"0 1\"><m:composite values=\"1 3\"/>"
+        "</m:compositematerials><m:colorgroup id=\"10\"><m:color color=\"#00FF0080\"/><m:color color=\"#808080\"/>"
+        "</m:colorgroup><m:multiproperties id=\"11\" pids=\"8 10\"><m:multi pindices=\"0 0\"/><m:multi pindices=\"1\"/>"
+        "</m:multiproperties><m:multiproperties id=\"12\" pids=\"8 10\" blendmethods=\"multiply\"><m:multi "
+        "pindices=\"0 1\"/></m:multiproperties><m:compositematerials id=\"13\" matid=\"13\" matindices=\"0\">"
+        "<m:composite values=\"1\"/></m:compositematerials>";
+    const auto color_of = [&](const std::string& property) {
+        const MeshFile file = read_model_text(tables + make_tetrahedron(1, "", property), "<item objectid=\"1\"/>");
+        return file.triangle_colors.empty() ? Rgb8{} : file.triangle_colors[0];
+    };
+    CHECK(color_of("pid=\"9\" p1=\"0\"") == Rgb8{64, 0, 191});    // a quarter red, three quarters blue
+    CHECK(color_of("pid=\"11\" p1=\"0\"") == Rgb8{127, 128, 0});  // green that covers 128/255 of red
+    CHECK(color_of("pid=\"11\" p1=\"1\"") == Rgb8{0, 128, 127});  // the index left out is 0
+    CHECK(color_of("pid=\"12\" p1=\"0\"") == Rgb8{128, 0, 0});    // half grey times red
+    CHECK(color_of("pid=\"13\" p1=\"0\"") == Rgb8{});             // made of itself: of nothing
+    // A triangle that names no group means that of its object.
+    const MeshFile file =
+        read_model_text(tables + make_tetrahedron(1, "pid=\"8\" pindex=\"0\"", "p1=\"1\""), "<item objectid=\"1\"/>");
+    CHECK(file.triangle_colors[0] == Rgb8{0, 0, 255});
+    CHECK_THROWS_WITH(color_of("pid=\"9\" p1=\"1\""), Catch::Contains("colour index 1"));
+    CHECK_THROWS_WITH(color_of("pid=\"11\" p1=\"2\""), Catch::Contains("colour index 2"));
+}
+
+TEST_CASE("3mf: a texture gives the pixel in the middle of each triangle", "[formats][threemf]") {
+    // Two by two pixels: red, green above blue, white. v = 0 is the lower edge.
+    Image picture;
+    picture.width = picture.height = 2;
+    picture.pixels = {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {255, 255, 255, 255}};
+    const auto colors_with = [&](const std::string& u, const std::string& v, const std::string& style,
+                                 const std::string& png) {
+        const std::string resources =
+            "<m:texture2d id=\"5\" path=\"/3D/Textures/t.png\" contenttype=\"image/png\" tilestyleu=\"" + style +
+            "\"/><m:texture2dgroup id=\"6\" texid=\"5\"><m:tex2coord u=\"" + u + "\" v=\"" + v +
+            "\"/></m:texture2dgroup>" + make_tetrahedron(1, "", "pid=\"6\" p1=\"0\"");
+        return read(make_package(make_model(resources, "<item objectid=\"1\"/>"), {{"3D/Textures/t.png", png}}));
+    };
+    const auto color_at = [&](const std::string& u, const std::string& v, const std::string& style = "wrap") {
+        return colors_with(u, v, style, write_png(picture)).triangle_colors.at(0);
+    };
+    CHECK(color_at("0.25", "0.75") == Rgb8{255, 0, 0});
+    CHECK(color_at("0.75", "0.75") == Rgb8{0, 255, 0});
+    CHECK(color_at("0.25", "0.25") == Rgb8{0, 0, 255});
+    CHECK(color_at("0.75", "0") == Rgb8{255, 255, 255});
+    CHECK(color_at("1.25", "0.75") == Rgb8{255, 0, 0});
+    CHECK(color_at("1.25", "0.75", "mirror") == Rgb8{0, 255, 0});
+    CHECK(color_at("-3", "0.75", "clamp") == Rgb8{255, 0, 0});
+    CHECK(color_at("9", "0.75", "none") == Rgb8{0, 255, 0});
+    // A picture that cannot be read costs the colours, not the model.
+    const MeshFile broken = colors_with("0", "0", "wrap", "no picture");
+    CHECK(broken.triangle_colors.empty());
+    REQUIRE(broken.warnings.size() == 2);
+    CHECK_THAT(broken.warnings[1], Catch::Contains("t.png"));
 }
 
 TEST_CASE("3mf: support objects are left out, unknown elements skipped", "[formats][threemf]") {
@@ -191,8 +249,8 @@ std::vector<Hostile> hostile_packages() {
          "within itself"},
         {"doubling tree", make_package(make_model(nested_components(31), "<item objectid=\"31\"/>")), "placed meshes"},
         {"doubling tree of nothing",
-         make_package(make_model(nested_components(31, "<object id=\"1\"><components/></object>"),
-                                 "<item objectid=\"31\"/>")),
+         make_package(
+             make_model(nested_components(31, "<object id=\"1\"><components/></object>"), "<item objectid=\"31\"/>")),
          "placed objects"},
         {"deep", make_package(make_model(nested_components(40), "<item objectid=\"40\"/>")), "32 levels"},
         {"deep behind shallow",
