@@ -18,6 +18,7 @@
 #include "core/pipeline/settings_schema.h"
 #include "formats/facts_text.h"
 #include "formats/image_file.h"
+#include "formats/threemf_objects.h"
 
 namespace fretwork::cli {
 namespace {
@@ -40,8 +41,23 @@ int print(const Facts& facts, bool as_json) {
     return kDone;
 }
 
+/// What --objects can name.
+void add_objects(const ModelBytes& model, Facts& facts, const RunControl& run) {
+    std::vector<Facts> objects;
+    for (const ThreemfObject& object : read_threemf_objects(model.bytes, model.name, {}, run).objects)
+        objects.push_back({{{"name", object.name},
+                            {"id", std::int64_t{object.key.id}},
+                            {"part_number", object.part_number},
+                            {"type", object.type},
+                            {"printable", object.printable},
+                            {"instances", static_cast<std::int64_t>(object.instances)},
+                            {"triangles", static_cast<std::int64_t>(object.mesh.triangles.size())}}});
+    facts.add("objects", objects);
+}
+
 int mesh_info(const InfoOptions& options, const RunControl& run) {
-    const MeshFile file = read_model(options.model, run.slice(0.0, 0.3));
+    const ModelBytes model = read_bytes(options.model);
+    const MeshFile file = read_mesh(model.bytes, model.format, model.name, model.unit, run.slice(0.0, 0.3));
     const MeshReport report = report_mesh(file.mesh, CountSelfIntersections::kYes, run.slice(0.3, 1.0));
     const Vec3 size = report.max_mm - report.min_mm;
     Facts facts;
@@ -55,6 +71,7 @@ int mesh_info(const InfoOptions& options, const RunControl& run) {
     for (const MeshPart& part : file.parts)
         parts.push_back({{{"name", part.name}, {"triangles", std::int64_t{part.triangle_count}}}});
     facts.add("parts", parts);
+    if (model.format == MeshFormat::kThreemf) add_objects(model, facts, run);
     facts.add("warnings", file.warnings);
     return print(facts, options.json);
 }

@@ -14,7 +14,15 @@ struct VolumePlace {
     threemf::ResourceId object = 0;
     XmlTag tag;
     TextSpan span;
+    std::string type = "ModelPart";
 };
+
+std::map<std::string_view, std::string> values_of(std::string_view config, const XmlTag& tag) {
+    std::map<std::string_view, std::string> values;
+    for (const XmlAttributeSpan& attribute : attribute_spans(config, tag))
+        values[attribute.name] = xml_unescaped(attribute.raw);
+    return values;
+}
 
 std::vector<VolumePlace> volumes_of(std::string_view config) {
     std::vector<VolumePlace> volumes;
@@ -24,12 +32,17 @@ std::vector<VolumePlace> volumes_of(std::string_view config) {
     while (const auto tag = scanner.next()) {
         const bool ends = tag->kind == XmlTag::Kind::kEnd;
         if (tag->name == "object" && !ends) {
-            object = 0;
-            for (const XmlAttributeSpan& attribute : attribute_spans(config, *tag)) {
-                std::int64_t id = 0;
-                if (attribute.name == "id" && parse_integer(attribute.raw, id) && id > 0)
-                    object = static_cast<threemf::ResourceId>(id);
-            }
+            std::int64_t id = 0;
+            const bool sound = parse_integer(values_of(config, *tag)["id"], id) && id > 0;
+            object = sound ? static_cast<threemf::ResourceId>(id) : 0;
+        }
+        if (tag->name == "metadata" && within && !ends) {
+            const auto values = values_of(config, *tag);
+            const auto key = values.find("key"), value = values.find("value");
+            if (key == values.end() || value == values.end()) continue;
+            if (key->second == "volume_type") volumes.back().type = value->second;
+            // What versions before 2.0 wrote.
+            if (key->second == "modifier" && value->second == "1") volumes.back().type = "ParameterModifier";
         }
         if (tag->name != "volume") continue;
         if (!ends) volumes.push_back({object, *tag, tag->span});
@@ -61,11 +74,10 @@ std::string with_carved_volumes(std::string_view config, const std::map<threemf:
     return edited(config, std::move(edits));
 }
 
-std::map<threemf::ResourceId, std::size_t> further_volumes(std::string_view config) {
-    std::map<threemf::ResourceId, std::size_t> counts;
-    for (const VolumePlace& volume : volumes_of(config)) ++counts[volume.object];
-    for (auto& [object, count] : counts) --count;
-    return counts;
+std::map<threemf::ResourceId, std::vector<std::string>> volume_types(std::string_view config) {
+    std::map<threemf::ResourceId, std::vector<std::string>> types;
+    for (const VolumePlace& volume : volumes_of(config)) types[volume.object].push_back(volume.type);
+    return types;
 }
 
 }  // namespace fretwork

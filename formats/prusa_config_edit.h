@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/threemf_model.h"
 
@@ -17,7 +18,7 @@ inline constexpr std::string_view kPrusaConfigPart = "Metadata/Slic3r_PE_model.c
 /// \param triangles  of each carved object
 std::string with_carved_volumes(std::string_view config, const std::map<threemf::ResourceId, std::size_t>& triangles);
 
-/// Volumes beside the first, by object. \param config  the text of the part
-std::map<threemf::ResourceId, std::size_t> further_volumes(std::string_view config);
+/// Of each object, the type of every volume: "ModelPart", "ParameterModifier" ... \param config  the text of the part
+std::map<threemf::ResourceId, std::vector<std::string>> volume_types(std::string_view config);
 
 }  // namespace fretwork

@@ -52,7 +52,7 @@ class PartWriter {
 
     /// A part as it was; empty when there is none.
     [[nodiscard]] std::string text_of(std::string_view name) const {
-        return from_.contains(name) ? from_.read(name, kMaxSmallPartBytes) : std::string{};
+        return from_.contains(name) ? xml_as_utf8(from_.read(name, kMaxSmallPartBytes)) : std::string{};
     }
 
     std::string finish() {
@@ -107,7 +107,7 @@ struct ThreemfEditor::Impl {
             open_part(key.part);
             find(key);
         }
-        warn_of_volumes();
+        look_at_volumes();
     }
 
     void open_part(const std::string& name) {
@@ -134,14 +134,22 @@ struct ThreemfEditor::Impl {
                 fmt::format("object {}: <{}> refers to triangles that are carved away and is left out", key.id, name));
     }
 
-    void warn_of_volumes() {
+    /// PrusaSlicer puts parts and modifiers of an object into one mesh.
+    void look_at_volumes() {
         if (!zip.contains(kPrusaConfigPart)) return;
-        const auto further = further_volumes(zip.read(kPrusaConfigPart, kMaxSmallPartBytes));
+        const auto volumes = volume_types(zip.read(kPrusaConfigPart, kMaxSmallPartBytes));
         for (const ObjectKey& key : carved) {
-            const auto found = further.find(key.id);
-            if (key.part == package.model_part() && found != further.end() && found->second > 0)
+            const auto found = volumes.find(key.id);
+            if (key.part != package.model_part() || found == volumes.end()) continue;
+            for (const std::string& type : found->second)
+                if (type != "ModelPart")
+                    throw InvalidInput(fmt::format(
+                        "{}: object {}: found a volume of PrusaSlicer of type {} in its mesh, expected parts alone; "
+                        "carve other objects with --objects, or take it out",
+                        source, key.id, type));
+            if (found->second.size() > 1)
                 warnings.push_back(fmt::format("object {}: its {} volumes of PrusaSlicer are carved as one", key.id,
-                                               found->second + 1));
+                                               found->second.size()));
         }
     }
 

@@ -33,7 +33,8 @@ struct ThreemfEdit {
 class ThreemfEditor {
   public:
     /// Finds the objects that are to be carved. The bytes must outlive it.
-    /// \throws InvalidInput  no such object; a model part with a carved object of over 1 GiB; see ZipReader.
+    /// \throws InvalidInput  no such object; one whose mesh holds a modifier of PrusaSlicer as well; a model part with
+    /// a carved object of over 1 GiB; see ZipReader.
     ThreemfEditor(std::string_view bytes, std::string_view source, const std::vector<threemf::ObjectKey>& carved);
     ~ThreemfEditor();
     ThreemfEditor(const ThreemfEditor&) = delete;

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kMaxEntries = 1 << 24;
 constexpr std::size_t kMaxLayers = 32;
-constexpr std::size_t kMaxPixels = std::size_t{32} << 20;
+constexpr std::size_t kMaxPixels = std::size_t{16} << 20;
+constexpr std::uint64_t kMaxPictureBytes = std::uint64_t{64} << 20;
 
 Rgba8 mean_of(const std::array<Rgba8, 3>& corners) {
     if (corners[0] == corners[1] && corners[1] == corners[2]) return corners[0];
@@ -211,7 +212,9 @@ const Image* Materials::picture_of(ResourceId id) {
         texture.picture.emplace();
         try {
             const ImageLimits limits{.max_side_px = 8192, .max_pixels = kMaxPixels - pixels_};
-            texture.picture = read_image(read_part_(texture.path), texture.path, limits);
+            const std::string bytes = read_part_(texture.path, kMaxPictureBytes - picture_bytes_);
+            picture_bytes_ += bytes.size();
+            texture.picture = read_image(bytes, texture.path, limits);
             pixels_ += texture.picture->pixels.size();
         } catch (const InvalidInput& unreadable) {
             warnings_.push_back(std::string("texture left out: ") + unreadable.what());

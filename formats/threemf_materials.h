@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -17,11 +18,11 @@
 
 namespace fretwork::threemf {
 
-/// Gives the bytes of a part of the package.
-using ReadPart = std::function<std::string(std::string_view path)>;
+/// Gives the bytes of a part of the package. \throws InvalidInput  no such part; over `max_bytes`.
+using ReadPart = std::function<std::string(std::string_view path, std::uint64_t max_bytes)>;
 
 /// Colour groups, base materials, textures, composites and multi-properties of one model part. Limits: 2^24 entries in
-/// all; pictures of up to 8192 px a side and 32 M pixels together.
+/// all; pictures of up to 8192 px a side, and of 16 M pixels and 64 MiB in their files together.
 class Materials {
   public:
     /// Both must outlive it. \param read_part  may be empty: textures have no colour then
@@ -77,7 +78,8 @@ class Materials {
     std::map<ResourceId, Texture> textures_;
     Group* open_ = nullptr;
     std::size_t entries_ = 0;
-    std::size_t pixels_ = 0;
+    std::size_t pixels_ = 0;  ///< of the pictures read so far, and the bytes of their files
+    std::uint64_t picture_bytes_ = 0;
     std::vector<std::string> warnings_;
 };
 

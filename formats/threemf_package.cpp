@@ -9,7 +9,6 @@ namespace fretwork::threemf {
 namespace {
 
 constexpr std::uint64_t kMaxRelationsBytes = 8 << 20;
-constexpr std::uint64_t kMaxTextureBytes = 64 << 20;
 constexpr std::string_view kRelationsSpace = "http://schemas.openxmlformats.org/package/2006/relationships";
 
 /// Picks the target of the first relationship of the wanted type.
@@ -59,7 +58,7 @@ void Package::find_model_part() {
 
 Model Package::read_model(std::string_view part, bool ignore_required, const RunControl& run) const {
     const ModelReadOptions options{ignore_required,
-                                   [this](std::string_view path) { return read_part(path, kMaxTextureBytes); }};
+                                   [this](std::string_view path, std::uint64_t most) { return read_part(path, most); }};
     ModelReader reader(source_ + ": " + std::string(without_slash(part)), options, run);
     zip_.read_blocks(without_slash(part), [&](std::string_view block) {
         run.throw_if_stopped();

@@ -107,6 +107,19 @@ TEST_CASE("cli: --objects takes names, numbers and part numbers, also of assembl
     }
 }
 
+TEST_CASE("cli: info lists the objects that --objects can name", "[cli][threemf]") {
+    const TemporaryFolder folder;
+    spit(folder / "in.3mf", three_boxes());
+    const Json info = Json::parse(run_program({"info", folder / "in.3mf", "--json"}).out);
+    REQUIRE(info["objects"].size() == 5);
+    CHECK(info["objects"][0]["name"] == "lid");
+    CHECK(info["objects"][0]["instances"] == 2);
+    CHECK(info["objects"][1]["part_number"] == "S-2");
+    CHECK(info["objects"][1]["id"] == 2);
+    CHECK(info["objects"][3]["type"] == "support");
+    CHECK(info["objects"][4]["printable"] == false);
+}
+
 TEST_CASE("cli: a name that no object has is an error that lists those there are", "[cli][threemf][errors]") {
     const TemporaryFolder folder;
     spit(folder / "in.3mf", three_boxes());

@@ -259,6 +259,18 @@ TEST_CASE("3mf editor: PrusaSlicer's runs of triangles follow the carved mesh", 
                                        std::regex("<volume firstid=\"2\" lastid=\"3\"></volume>"), ""));
 }
 
+TEST_CASE("3mf editor: a mesh that holds a modifier of PrusaSlicer is not carved", "[formats][threemf][errors]") {
+    const std::string config =
+        "<config><object id=\"1\"><volume firstid=\"0\" lastid=\"1\"><metadata type=\"volume\" key=\"volume_type\" "
+        "value=\"ModelPart\"/></volume><volume firstid=\"2\" lastid=\"3\"><metadata type=\"volume\" "
+        "key=\"volume_type\" value=\"ParameterModifier\"/></volume></object></config>";
+    const std::string input = make_package(
+        make_model(make_tetrahedron(1) + make_tetrahedron(2), "<item objectid=\"1\"/><item objectid=\"2\"/>"),
+        {{"Metadata/Slic3r_PE_model.config", config}});
+    CHECK_THROWS_WITH(ThreemfEditor(input, "p", {{kRoot, 1}}), Catch::Contains("ParameterModifier"));
+    CHECK((part_of(Carving().of(input, {{kRoot, 2}}), "Metadata/Slic3r_PE_model.config") == config));
+}
+
 TEST_CASE("3mf editor: what refers to carved triangles is named", "[formats][threemf]") {
     std::string object = make_tetrahedron(1);
     object.insert(object.find("</mesh>"), "<fw:sets><fw:set/></fw:sets>");
