@@ -1,6 +1,7 @@
 // Promise 7: whatever in the input package is not carved comes out unchanged.
 #include "formats/threemf_editor.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <regex>
 
@@ -280,6 +281,38 @@ TEST_CASE("3mf editor: what refers to carved triangles is named", "[formats][thr
     CHECK_THAT(editor.warnings()[0], Catch::Contains("<sets>"));
     CHECK_THROWS_WITH(ThreemfEditor(input, "p", {{kRoot, 9}}), Catch::Contains("no object 9"));
     CHECK_THROWS_AS(ThreemfEditor(input, "p", {{kRoot, 1}}).write({}), InvalidInput);
+}
+
+TEST_CASE("3mf editor: a damaged model text is refused, or carved into a package that reads",
+          "[formats][threemf][errors]") {
+    const std::string sound = part_of(make_project(), kRoot);
+    const Carving carving;
+    const std::string other = part_of(make_project(), "3D/Objects/other.model");
+    std::size_t carved = 0;
+    for (std::size_t at = 0; at < sound.size(); ++at) {
+        std::string text = sound;
+        text[at] = "<>\"'/:x &"[at % 9];
+        CAPTURE(at, text.substr(at < 20 ? 0 : at - 20, 40));
+        const std::string package = make_package(text, {{"3D/Objects/other.model", other}});
+        ThreemfObjects found;
+        try {
+            found = read_threemf_objects(package, "p");
+        } catch (const InvalidInput&) {
+            continue;
+        }
+        const auto wall = std::ranges::find(found.objects, ObjectKey{kRoot, 5}, &ThreemfObject::key);
+        if (wall == found.objects.end()) continue;
+        const std::string output = carving.of(package, {{kRoot, 5}});
+        const ThreemfObjects again = read_threemf_objects(output, "p");
+        REQUIRE(again.objects.size() == found.objects.size());
+        for (std::size_t i = 0; i < again.objects.size(); ++i) {
+            CHECK(again.objects[i].key == found.objects[i].key);
+            const bool is_wall = again.objects[i].key == ObjectKey{kRoot, 5};
+            CHECK(again.objects[i].mesh.triangles.size() == (is_wall ? 12 : found.objects[i].mesh.triangles.size()));
+        }
+        ++carved;
+    }
+    CHECK(carved > 300);
 }
 
 TEST_CASE("3mf editor: the bytes do not depend on threads", "[formats][threemf][determinism]") {
