@@ -34,7 +34,7 @@ std::string shortest(double value) {
 }
 
 /// Turns a width into voxels.
-double checked_width(const SurfaceVoxels& shell, const char* name, double width_mm) {
+double checked_width(const SurfaceVoxels& shell, const char* name, double width_mm, double least_voxels) {
     if (!(width_mm > 0.0) || !std::isfinite(width_mm))
         throw InvalidSetting(std::string(name) + " = " + shortest(width_mm) + ": expected a width above 0 mm");
     const double voxel = shell.grid.voxel_mm;
@@ -44,12 +44,12 @@ double checked_width(const SurfaceVoxels& shell, const char* name, double width_
         high = high.cwiseMax(p);
     }
     const double side_mm = (high - low).maxCoeff();
-    if (width_mm < 2.0 * voxel * (1.0 - 1e-9))
+    if (width_mm < least_voxels * voxel * (1.0 - 1e-9))
         throw ConstraintsNotMet(std::string(name) + " = " + shortest(width_mm) + " mm is " +
-                                shortest(width_mm / voxel) + " voxels of " + shortest(voxel) +
-                                " mm, under two: raise the resolution to " +
-                                std::to_string(static_cast<long>(std::ceil(2.0 * side_mm / width_mm))) +
-                                " or the width to " + shortest(2.0 * voxel) + " mm");
+                                shortest(width_mm / voxel) + " voxels of " + shortest(voxel) + " mm, under " +
+                                shortest(least_voxels) + ": raise the resolution to " +
+                                std::to_string(static_cast<long>(std::ceil(least_voxels * side_mm / width_mm))) +
+                                " or the width to " + shortest(least_voxels * voxel) + " mm");
     if (width_mm > 0.5 * side_mm)
         throw ConstraintsNotMet(std::string(name) + " = " + shortest(width_mm) + " mm is over half of the object, " +
                                 shortest(side_mm) + " mm: lower it to " + shortest(0.5 * side_mm) + " mm or less");
@@ -268,8 +268,9 @@ EnlargeResult enlarge_features(const SurfaceVoxels& shell, const GeodesicLinks& 
     if (solid.size() != shell.size() || (!protect.empty() && protect.size() != shell.size()))
         throw InvalidInput("enlarge: " + std::to_string(solid.size()) + " states and " +
                            std::to_string(protect.size()) + " marks for " + std::to_string(shell.size()) + " voxels");
-    const double feature = checked_width(shell, "min_feature_mm", settings.min_feature_mm) + kDrawnSolidBorder;
-    const double hole = checked_width(shell, "min_hole_mm", settings.min_hole_mm) + kDrawnHoleBorder;
+    const double feature =
+        checked_width(shell, "min_feature_mm", settings.min_feature_mm, kLeastFeatureVoxels) + kDrawnSolidBorder;
+    const double hole = checked_width(shell, "min_hole_mm", settings.min_hole_mm, kLeastHoleVoxels) + kDrawnHoleBorder;
     run.checkpoint(kStage, 0.0);
     return Enlarger(shell, links, solid, protect, feature, hole, run).run();
 }

@@ -9,6 +9,11 @@
 
 namespace fretwork {
 
+/// Widths in voxels under which the shell cannot hold a feature or a hole. Borders are drawn later, between the
+/// voxels, and lean towards the empty side: a hole of 0.9 voxels as it is printed is two voxels wide here.
+inline constexpr double kLeastFeatureVoxels = 2.0;
+inline constexpr double kLeastHoleVoxels = 0.9;
+
 struct EnlargeSettings {
     double min_feature_mm = 0.8;  ///< least width of solid features on the surface
     double min_hole_mm = 0.8;     ///< least width of holes; narrower ones are filled
@@ -27,11 +32,11 @@ struct EnlargeResult {
 /// geodesically to the printable radius, united with the pattern; then narrow holes are filled.
 /// After it: every solid voxel lies in a geodesic disc of solid voxels of diameter `min_feature_mm` plus
 /// half a voxel (which the border drawn between voxels may take away), every empty voxel in one of
-/// diameter `min_hole_mm` of empty voxels, both to one voxel, and each connected component of the shell
-/// carries one connected component of solid.
+/// diameter `min_hole_mm` and 1.1 voxels of empty voxels, and each connected component of the shell carries
+/// one connected component of solid.
 /// \param links    of the shell, by `link_two_rings`
 /// \param protect  voxels that must keep their state (kept regions); may be empty
-/// \throws InvalidSetting  a width that is not positive; ConstraintsNotMet  a width under two voxels
+/// \throws InvalidSetting  a width that is not positive; ConstraintsNotMet  a width under the least
 ///                         (names the resolution that would do) or over half of the object.
 EnlargeResult enlarge_features(const SurfaceVoxels& shell, const GeodesicLinks& links, const SolidStates& solid,
                                const std::vector<std::uint8_t>& protect, const EnlargeSettings& settings,

@@ -13,7 +13,7 @@ namespace fretwork {
 namespace {
 
 constexpr double kLeastSideMm = 5.0, kMostSideMm = 5000.0;
-constexpr double kLeastWallVoxels = 2.0, kLeastFeatureVoxels = 2.0, kLeastRadiusVoxels = 1.5;
+constexpr double kLeastWallVoxels = 2.0, kLeastRadiusVoxels = 1.5;
 constexpr int kDefaultResolution = 256;
 // A width that is a whole number of voxels may come out a rounding error below it.
 constexpr double kSlack = 1.0 - 1e-9;
@@ -67,7 +67,7 @@ void coarsen(int halvings, ResolvedSettings& r) {
     r.solidify.thickness_mm = std::max(r.solidify.thickness_mm, kLeastWallVoxels * r.voxel_mm);
     r.reinforce.thickness_mm = r.solidify.thickness_mm;
     r.enlarge.min_feature_mm = std::max(r.enlarge.min_feature_mm, kLeastFeatureVoxels * r.voxel_mm);
-    r.enlarge.min_hole_mm = std::max(r.enlarge.min_hole_mm, kLeastFeatureVoxels * r.voxel_mm);
+    r.enlarge.min_hole_mm = std::max(r.enlarge.min_hole_mm, kLeastHoleVoxels * r.voxel_mm);
 }
 
 double wall_thickness(const Settings& settings, const ResolvedSettings& r) {
@@ -88,16 +88,17 @@ double wall_thickness(const Settings& settings, const ResolvedSettings& r) {
 }
 
 // A width of features or holes: what was asked, if it can be resolved and printed, else the default.
-double printable_width(const std::optional<double>& asked, const char* key, const FabricationOptions& fabrication,
-                       const ResolvedSettings& r) {
-    if (!asked) return std::max(2.0 * fabrication.nozzle_mm, kLeastFeatureVoxels * r.voxel_mm);
+double printable_width(const std::optional<double>& asked, const char* key, double least_voxels,
+                       const FabricationOptions& fabrication, const ResolvedSettings& r) {
+    const double least_mm = least_voxels * r.voxel_mm;
+    if (!asked) return std::max(2.0 * fabrication.nozzle_mm, least_mm);
     if (*asked < fabrication.nozzle_mm)
         throw ConstraintsNotMet(fmt::format("{} = {:g} is under fabrication.nozzle_mm = {:g}; use {:g} or more", key,
                                             *asked, fabrication.nozzle_mm, fabrication.nozzle_mm));
-    if (*asked < kLeastFeatureVoxels * r.voxel_mm * kSlack)
-        throw ConstraintsNotMet(fmt::format(
-            "{} = {:g} is under two voxels of {:g} mm; use {:.4g} or shell.resolution = {}", key, *asked, r.voxel_mm,
-            kLeastFeatureVoxels * r.voxel_mm, resolution_for(r.longest_side_mm, *asked / kLeastFeatureVoxels)));
+    if (*asked < least_mm * kSlack)
+        throw ConstraintsNotMet(
+            fmt::format("{} = {:g} is under {:g} voxels of {:g} mm; use {:.4g} or shell.resolution = {}", key, *asked,
+                        least_voxels, r.voxel_mm, least_mm, resolution_for(r.longest_side_mm, *asked / least_voxels)));
     if (*asked > 0.5 * r.longest_side_mm)
         throw ConstraintsNotMet(fmt::format("{} = {:g} is over half of the model's {:g} mm; use at most {:g}", key,
                                             *asked, r.longest_side_mm, 0.5 * r.longest_side_mm));
@@ -224,10 +225,11 @@ ResolvedSettings resolve_settings(const Settings& settings, const SurfaceFacts& 
     r.solidify.keep_colors = settings.output.colour == OutputColor::kExemplar;
     r.solidify.target_triangles = static_cast<std::size_t>(settings.fabrication.target_triangles);
 
+    const FabricationOptions& fabrication = settings.fabrication;
     r.enlarge.min_feature_mm =
-        printable_width(settings.fabrication.min_feature_mm, "fabrication.min_feature_mm", settings.fabrication, r);
+        printable_width(fabrication.min_feature_mm, "fabrication.min_feature_mm", kLeastFeatureVoxels, fabrication, r);
     r.enlarge.min_hole_mm =
-        printable_width(settings.fabrication.min_hole_mm, "fabrication.min_hole_mm", settings.fabrication, r);
+        printable_width(fabrication.min_hole_mm, "fabrication.min_hole_mm", kLeastHoleVoxels, fabrication, r);
 
     r.exemplar_width_mm = exemplar_width(settings, r, exemplar);
     const double pixels_per_voxel = exemplar.width_px * r.voxel_mm / r.exemplar_width_mm;

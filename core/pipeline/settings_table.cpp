@@ -342,7 +342,7 @@ void add_fabrication(std::vector<SettingInfo>& t) {
     t.push_back(row("fabrication.min_feature_mm", FIELD(fabrication.min_feature_mm), "mm", above(0, 100),
                     "Least width of solid features.", "two nozzles, at least 2 voxels"));
     t.push_back(row("fabrication.min_hole_mm", FIELD(fabrication.min_hole_mm), "mm", above(0, 100),
-                    "Least width of holes.", "two nozzles, at least 2 voxels"));
+                    "Least width of holes.", "two nozzles, at least 0.9 voxels"));
     t.push_back(row("fabrication.simplify_voxels", FIELD(fabrication.simplify_voxels), "voxels", between(0, 1),
                     "How far simplifying may move the surface; 0 keeps every triangle."));
     t.push_back(row("fabrication.target_triangles", FIELD(fabrication.target_triangles), "1", between(0, 1e8),

@@ -318,7 +318,8 @@ TEST_CASE("enlarge: says what cannot be met", "[enlarge]") {
     CHECK_THROWS_AS(run(0.0, 3.0), InvalidSetting);
     CHECK_THROWS_AS(run(3.0, -1.0), InvalidSetting);
     CHECK_THROWS_AS(run(std::numeric_limits<double>::quiet_NaN(), 3.0), InvalidSetting);
-    CHECK_THROWS_AS(run(3.0, 1.0), ConstraintsNotMet);
+    CHECK_THROWS_AS(run(1.9, 3.0), ConstraintsNotMet);
+    CHECK_THROWS_AS(run(3.0, 0.8), ConstraintsNotMet);
     CHECK_THROWS_AS(run(11.0, 3.0), ConstraintsNotMet);
     CHECK_THROWS_AS(enlarge_features(shell, SolidStates(3), {}, {}), InvalidInput);
     CHECK_THROWS_AS(enlarge_features({}, {}, {}, {}), InvalidInput);
