@@ -269,8 +269,11 @@ EnlargeResult enlarge_features(const SurfaceVoxels& shell, const GeodesicLinks& 
         throw InvalidInput("enlarge: " + std::to_string(solid.size()) + " states and " +
                            std::to_string(protect.size()) + " marks for " + std::to_string(shell.size()) + " voxels");
     const double feature =
-        checked_width(shell, "min_feature_mm", settings.min_feature_mm, kLeastFeatureVoxels) + kDrawnSolidBorder;
-    const double hole = checked_width(shell, "min_hole_mm", settings.min_hole_mm, kLeastHoleVoxels) + kDrawnHoleBorder;
+        checked_width(shell, "min_feature_mm", settings.min_feature_mm, settings.draft ? 0.0 : kLeastFeatureVoxels) +
+        kDrawnSolidBorder;
+    const double hole =
+        checked_width(shell, "min_hole_mm", settings.min_hole_mm, settings.draft ? 0.0 : kLeastHoleVoxels) +
+        kDrawnHoleBorder;
     run.checkpoint(kStage, 0.0);
     return Enlarger(shell, links, solid, protect, feature, hole, run).run();
 }

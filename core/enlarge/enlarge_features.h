@@ -17,6 +17,7 @@ inline constexpr double kLeastHoleVoxels = 0.9;
 struct EnlargeSettings {
     double min_feature_mm = 0.8;  ///< least width of solid features on the surface
     double min_hole_mm = 0.8;     ///< least width of holes; narrower ones are filled
+    bool draft = false;           ///< widths may be under what the voxels can hold, and are kept as far as they can
 };
 
 struct EnlargeResult {
@@ -36,7 +37,7 @@ struct EnlargeResult {
 /// one connected component of solid.
 /// \param links    of the shell, by `link_two_rings`
 /// \param protect  voxels that must keep their state (kept regions); may be empty
-/// \throws InvalidSetting  a width that is not positive; ConstraintsNotMet  a width under the least
+/// \throws InvalidSetting  a width that is not positive; ConstraintsNotMet  a width under the least, but for drafts
 ///                         (names the resolution that would do) or over half of the object.
 EnlargeResult enlarge_features(const SurfaceVoxels& shell, const GeodesicLinks& links, const SolidStates& solid,
                                const std::vector<std::uint8_t>& protect, const EnlargeSettings& settings,

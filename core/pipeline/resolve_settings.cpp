@@ -54,8 +54,8 @@ int choose_halvings(const Settings& settings, const SurfaceFacts& surface, const
     return halvings;
 }
 
-// Goes over to the coarser grid. What the settings ask for was checked against the grid that they name; here widths
-// that the coarser one cannot hold grow to those that it can.
+// Goes over to the coarser grid. What the settings ask for was checked against the grid that they name; here a wall
+// that the coarser one cannot hold grows to one that it can.
 void coarsen(int halvings, ResolvedSettings& r) {
     r.voxelize.halvings = halvings;
     r.synthesis.skipped_levels = halvings;
@@ -66,8 +66,8 @@ void coarsen(int halvings, ResolvedSettings& r) {
     r.reinforce.pattern_radius_voxels = std::max(r.reinforce.pattern_radius_voxels / factor, kLeastRadiusVoxels);
     r.solidify.thickness_mm = std::max(r.solidify.thickness_mm, kLeastWallVoxels * r.voxel_mm);
     r.reinforce.thickness_mm = r.solidify.thickness_mm;
-    r.enlarge.min_feature_mm = std::max(r.enlarge.min_feature_mm, kLeastFeatureVoxels * r.voxel_mm);
-    r.enlarge.min_hole_mm = std::max(r.enlarge.min_hole_mm, kLeastHoleVoxels * r.voxel_mm);
+    // Thin strokes grown to two coarse voxels would show a wall with a few holes instead of the pattern.
+    r.enlarge.draft = true;
 }
 
 double wall_thickness(const Settings& settings, const ResolvedSettings& r) {

@@ -73,7 +73,8 @@ TEST_CASE("resolve: a draft keeps the design of its full run and coarsens the gr
     // What the coarse grid cannot hold grows to what it can; what the full run refuses is refused.
     CHECK(draft.solidify.thickness_mm == Approx(std::max(full.solidify.thickness_mm, 2.0 * draft.voxel_mm)));
     CHECK(draft.reinforce.thickness_mm == draft.solidify.thickness_mm);
-    CHECK(draft.enlarge.min_feature_mm == Approx(2.0 * draft.voxel_mm));
+    CHECK(draft.enlarge.min_feature_mm == Approx(0.8));  // not what two coarse voxels would make of it
+    CHECK(draft.enlarge.draft);
     CHECK(draft.reinforce.pattern_radius_voxels == 1.5);
     CHECK_NOTHROW(resolve_sphere({"synthesis.preset=draft", "shell.thickness_mm=1"}));
     CHECK_THROWS_AS(resolve_sphere({"synthesis.preset=draft", "shell.thickness_mm=0.5"}), ConstraintsNotMet);
