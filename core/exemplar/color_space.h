@@ -22,6 +22,7 @@ namespace fretwork {
 
 /// Nearest 8-bit value of `unit` in [0, 1]; values outside are clamped.
 [[nodiscard]] inline std::uint8_t to_byte(float unit) {
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative, and this is in inner loops
     return static_cast<std::uint8_t>(std::clamp(unit, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
 
