@@ -13,7 +13,6 @@ struct CarveRequest {
     ModelBytes model;
     PictureFiles pictures;
     Settings settings;
-    std::vector<std::string> read_beside;  ///< other files that the model came from
     std::vector<std::string> warnings;
 };
 

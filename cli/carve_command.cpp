@@ -64,16 +64,14 @@ CarveRequest request_of_scad(const std::string& path, PatternOptions pattern, co
     CarveRequest request;
     request.settings = settings_of(pattern, std::move(document));
     request.model = std::move(scad.model);
-    request.warnings = std::move(scad.warnings);
-    request.read_beside.assign(scad.read.begin() + 1, scad.read.end());
     return request;
 }
 
 CarveRequest request_of(const CarveOptions& options, const RunControl& run) {
     const PatternOptions pattern = with_own_flags(options);
-    if (is_scad(options.model.path)) return request_of_scad(options.model.path, pattern, run);
     if (options.again) return request_of_package(read_bytes(options.model), options.source, pattern);
     if (!options.source.empty()) throw InvalidSetting("--source goes with --again");
+    if (is_scad(options.model.path)) return request_of_scad(options.model.path, pattern, run);
     CarveRequest request;
     request.settings = settings_of(pattern);
     // Before the model is read: it is quick, and most mistakes are there.
@@ -91,8 +89,6 @@ struct Opened {
 Opened open(const CarveOptions& options, const RunControl& run) {
     Opened opened{request_of(options, run), {}};
     opened.model = open_model(std::move(opened.request.model), opened.request.settings, run);
-    const std::vector<std::string>& beside = opened.request.read_beside;
-    opened.model.read_beside.insert(opened.model.read_beside.end(), beside.begin(), beside.end());
     if (options.run.quiet) return opened;
     for (const auto* warnings : {&opened.request.warnings, &opened.model.warnings})
         for (const std::string& warning : *warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/words.h"
 
 namespace fretwork::cli {
 namespace {
@@ -25,19 +26,6 @@ std::string listed(const std::vector<ThreemfObject>& objects) {
     for (const ThreemfObject& object : objects) names.push_back(described(object));
     if (names.size() <= most) return fmt::format("{}", fmt::join(names, ", "));
     return fmt::format("{} and {} more", fmt::join(names.begin(), names.begin() + most, ", "), names.size() - most);
-}
-
-std::vector<std::string> words_of(const std::string& text) {
-    std::vector<std::string> words;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        std::string word = text.substr(begin, end - begin);
-        word.erase(0, word.find_first_not_of(' '));
-        word.erase(word.find_last_not_of(' ') + 1);
-        if (!word.empty()) words.push_back(std::move(word));
-        begin = end + 1;
-    }
-    return words;
 }
 
 bool is_called(const ThreemfObject& object, const std::string& word) {
@@ -67,7 +55,7 @@ std::vector<bool> chosen(const std::vector<ThreemfObject>& objects, const std::s
     }
     // A name may hold a comma itself.
     if (take_called(asked)) return take;
-    for (const std::string& word : words_of(asked))
+    for (const std::string& word : words_between_commas(asked))
         if (!take_called(word))
             throw InvalidSetting(
                 fmt::format("--objects: found no \"{}\" in {}, expected one of {}", word, file, listed(objects)));
@@ -95,18 +83,6 @@ void open_threemf(const Settings& settings, CarveModel& model, const RunControl&
     const std::vector<bool> take = chosen(found.objects, settings.input.objects, model.file.name);
     for (std::size_t i = 0; i < take.size(); ++i)
         if (take[i]) model.targets.push_back(target_of(std::move(found.objects[i])));
-}
-
-/// Curved faces follow their surface to a tenth of a voxel.
-CadMeshing meshing_for(const Settings& settings) {
-    constexpr double kVoxelShare = 0.1;
-    CadMeshing meshing;
-    if (settings.shell.voxel_mm && !settings.input.size_mm)
-        meshing.deviation_mm = kVoxelShare * *settings.shell.voxel_mm;
-    else if (settings.shell.resolution)
-        // The diagonal is at most sqrt(3) of the longest side.
-        meshing.deviation_share = kVoxelShare / (1.74 * *settings.shell.resolution);
-    return meshing;
 }
 
 std::vector<NamedTriangles> named_triangles_of(const MeshFile& file) {

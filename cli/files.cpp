@@ -82,7 +82,8 @@ LengthUnit unit_named(const std::string& name) {
         fmt::format("--input-unit {}: expected micron, millimeter, centimeter, meter, inch or foot", name));
 }
 
-ModelBytes read_bytes(const ModelSource& source) {
+ModelBytes read_bytes(const ModelSource& source, const RunControl& run) {
+    if (is_scad(source.path)) return render_scad(source.path, {}, run).model;
     ModelBytes model;
     model.unit = unit_named(source.unit);
     const bool stream = source.path == kStream;
@@ -95,13 +96,7 @@ ModelBytes read_bytes(const ModelSource& source) {
 }
 
 MeshFile read_model(const ModelSource& source, const RunControl& run) {
-    if (is_scad(source.path)) {
-        const ScadModel scad = render_scad(source.path, {}, run);
-        MeshFile file = read_model(scad.model, source.cad, run);
-        file.warnings.insert(file.warnings.begin(), scad.warnings.begin(), scad.warnings.end());
-        return file;
-    }
-    return read_model(read_bytes(source), source.cad, run);
+    return read_model(read_bytes(source, run), source.cad, run);
 }
 
 MeshFile read_model(const ModelBytes& model, const CadMeshing& cad, const RunControl& run) {
@@ -109,7 +104,10 @@ MeshFile read_model(const ModelBytes& model, const CadMeshing& cad, const RunCon
     options.unit = model.unit;
     options.cad = cad;
     options.folder = model.folder;
-    return read_mesh(model.bytes, model.format, model.name, options, run);
+    MeshFile file = read_mesh(model.bytes, model.format, model.name, options, run);
+    file.warnings.insert(file.warnings.begin(), model.warnings.begin(), model.warnings.end());
+    file.read_beside.insert(file.read_beside.end(), model.read_beside.begin(), model.read_beside.end());
+    return file;
 }
 
 MeshBytes mesh_bytes(const std::string& path, MeshToWrite mesh, MeshFormat format) {

@@ -29,10 +29,13 @@ struct ModelBytes {
     std::string name;  ///< the path, or "standard input"
     LengthUnit unit = LengthUnit::kMillimeter;
     std::optional<std::filesystem::path> folder = {};  ///< that the file lies in; none for a stream
+    std::vector<std::string> read_beside = {};         ///< other files that the bytes were made from
+    std::vector<std::string> warnings = {};
 };
 
+/// An OpenSCAD file is rendered: its bytes are those of the mesh.
 /// \throws InvalidSetting  a format or unit that is not known; `-` without a format. \throws InvalidInput, FileError
-ModelBytes read_bytes(const ModelSource& source);
+ModelBytes read_bytes(const ModelSource& source, const RunControl& run = {});
 
 MeshFile read_model(const ModelSource& source, const RunControl& run = {});
 MeshFile read_model(const ModelBytes& model, const CadMeshing& cad, const RunControl& run = {});

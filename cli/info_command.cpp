@@ -10,7 +10,6 @@
 #include "cli/files.h"
 #include "cli/pattern_options.h"
 #include "cli/run_options.h"
-#include "cli/scad_model.h"
 #include "core/base/error.h"
 #include "core/exemplar/exemplar.h"
 #include "core/mesh/mesh_report.h"
@@ -57,10 +56,9 @@ void add_objects(const ModelBytes& model, Facts& facts, const RunControl& run) {
 }
 
 int mesh_info(const InfoOptions& options, const RunControl& run) {
-    const bool scad = is_scad(options.model.path);
-    const ModelBytes model = scad ? ModelBytes{} : read_bytes(options.model);
     const RunControl reading = run.slice(0.0, 0.3);
-    const MeshFile file = scad ? read_model(options.model, reading) : read_model(model, options.model.cad, reading);
+    const ModelBytes model = read_bytes(options.model, reading);
+    const MeshFile file = read_model(model, options.model.cad, reading);
     const MeshReport report = report_mesh(file.mesh, CountSelfIntersections::kYes, run.slice(0.3, 1.0));
     const Vec3 size = report.max_mm - report.min_mm;
     Facts facts;

@@ -128,21 +128,21 @@ ScadModel render_scad(const std::string& path, const ScadOptions& options, const
     for (const std::string& define : options.defines) {
         const std::string name = define.substr(0, define.find('='));
         if (!variables.contains(name) && !name.starts_with('$'))
-            scad.warnings.push_back(fmt::format("-D {}: {} assigns no {} itself", define, path, name));
+            scad.model.warnings.push_back(fmt::format("-D {}: {} assigns no {} itself", define, path, name));
     }
     const ScratchFolder folder;
     const fs::path result = folder / "model.off", rule = folder / "model.d";
-    hear(path, run_process(command_line(path, options, result, rule), run), scad.warnings);
+    hear(path, run_process(command_line(path, options, result, rule), run), scad.model.warnings);
     std::error_code none;
     if (!fs::exists(result, none)) throw InvalidInput(path + ": OpenSCAD: made no model");
     scad.model.bytes = read_file(result);
     scad.model.format = MeshFormat::kOff;
     scad.model.name = path;
     std::set<std::string> seen = {fs::weakly_canonical(path, none).string()};
-    scad.read.push_back(path);
     if (fs::exists(rule, none))
         for (const std::string& file : files_in_rule(read_file(rule)))
-            if (seen.insert(fs::weakly_canonical(file, none).string()).second) scad.read.push_back(relative_name(file));
+            if (seen.insert(fs::weakly_canonical(file, none).string()).second)
+                scad.model.read_beside.push_back(relative_name(file));
     return scad;
 }
 

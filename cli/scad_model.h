@@ -24,10 +24,9 @@ struct ScadOptions {
 ScadOptions take_scad_options(PatternOptions& pattern);
 
 struct ScadModel {
-    ModelBytes model;                   ///< as OFF, in millimetres
-    std::optional<std::string> spec;    ///< from the file's comment, see spec_in_scad
-    std::vector<std::string> read;      ///< every file that OpenSCAD has read
-    std::vector<std::string> warnings;  ///< what OpenSCAD has said, and variables that the file does not have
+    /// As OFF, in millimetres. Its warnings are what OpenSCAD has said, and variables that the file does not have.
+    ModelBytes model;
+    std::optional<std::string> spec;  ///< from the file's comment, see spec_in_scad
 };
 
 /// Renders the file. OpenSCAD reports many errors on the side and ends as if all were well; these are found.

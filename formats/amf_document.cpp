@@ -231,7 +231,10 @@ class Handler : public XmlHandler {
         if (parent == "volume" && volume_open_) object_->volumes.back().color = color;
         if (parent == "triangle") triangle_color_ = color;
         // The colour stands before or behind the coordinates of its vertex.
-        if (parent == "vertex") object_->vertex_colors[vertex_] = color;
+        if (parent == "vertex") {
+            object_->vertex_colors.resize(vertex_ + std::size_t{1});
+            object_->vertex_colors[vertex_] = color;
+        }
     }
 
     void add_triangle() {
@@ -239,8 +242,10 @@ class Handler : public XmlHandler {
         if (object_->mesh.triangles.size() % kStopEvery == 0) run_.throw_if_stopped();
         for (std::size_t k = 0; k < 3; ++k)
             if (corners_[k] < 0) xml_.fail("a triangle without v" + std::to_string(k + 1), "three corners");
-        if (triangle_color_)
-            object_->triangle_colors[static_cast<std::uint32_t>(object_->mesh.triangles.size())] = *triangle_color_;
+        if (triangle_color_) {
+            object_->triangle_colors.resize(object_->mesh.triangles.size());
+            object_->triangle_colors.push_back(triangle_color_);
+        }
         object_->mesh.triangles.push_back({static_cast<std::uint32_t>(corners_[0]),
                                            static_cast<std::uint32_t>(corners_[1]),
                                            static_cast<std::uint32_t>(corners_[2])});

@@ -27,10 +27,11 @@ struct Volume {
 struct Object {
     std::string name;
     std::optional<Rgb8> color;
-    TriangleMesh mesh;                              ///< in the unit of the document
-    std::map<std::uint32_t, Rgb8> vertex_colors;    ///< those that have one
-    std::map<std::uint32_t, Rgb8> triangle_colors;  ///< those that have one
-    std::vector<Volume> volumes;                    ///< cover all triangles in order
+    TriangleMesh mesh;  ///< in the unit of the document
+    /// Nothing where there is none; shorter than the vertices or triangles while the last ones have none.
+    std::vector<std::optional<Rgb8>> vertex_colors;
+    std::vector<std::optional<Rgb8>> triangle_colors;
+    std::vector<Volume> volumes;  ///< cover all triangles in order
 };
 
 /// A placed object or constellation.

@@ -27,7 +27,8 @@ class ObjectColors {
         for (const amf::Volume& volume : object_.volumes)
             std::fill_n(colors.begin() + volume.first_triangle, volume.triangle_count, of_volume(volume));
         if (!object_.vertex_colors.empty()) blend_corners(colors);
-        for (const auto& [t, color] : object_.triangle_colors) colors[t] = color;
+        for (std::size_t t = 0; t < object_.triangle_colors.size(); ++t)
+            if (object_.triangle_colors[t]) colors[t] = *object_.triangle_colors[t];
         return colors;
     }
 
@@ -51,9 +52,9 @@ class ObjectColors {
             std::array<unsigned, 3> sum{};
             bool touched = false;
             for (const std::uint32_t v : object_.mesh.triangles[t]) {
-                const auto own = object_.vertex_colors.find(v);
-                touched = touched || own != object_.vertex_colors.end();
-                const Rgb8& corner = own == object_.vertex_colors.end() ? colors[t] : own->second;
+                const bool own = v < object_.vertex_colors.size() && object_.vertex_colors[v].has_value();
+                touched = touched || own;
+                const Rgb8& corner = own ? *object_.vertex_colors[v] : colors[t];
                 for (std::size_t k = 0; k < 3; ++k) sum[k] += corner[k];
             }
             if (!touched) continue;

@@ -18,7 +18,7 @@
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
-#include <cmath>
+#include <algorithm>
 #include <mutex>
 #include <sstream>
 #include <string>
@@ -62,12 +62,19 @@ TopoDS_Shape read_shape(std::string_view bytes, CadFormat format) {
     return reader.ReadStream("memory", stream) == IFSelect_RetDone ? transferred(reader) : TopoDS_Shape();
 }
 
-void break_into_triangles(const TopoDS_Shape& shape, const CadMeshing& meshing) {
+double longest_side(const TopoDS_Shape& shape) {
     Bnd_Box box;
     BRepBndLib::Add(shape, box, Standard_False);
+    if (box.IsVoid()) return 1.0;
+    double low[3], high[3];
+    box.Get(low[0], low[1], low[2], high[0], high[1], high[2]);
+    return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+}
+
+void break_into_triangles(const TopoDS_Shape& shape, const CadMeshing& meshing) {
     IMeshTools_Parameters parameters;
-    const double share_mm = box.IsVoid() ? 0.1 : meshing.deviation_share * std::sqrt(box.SquareExtent());
-    parameters.Deflection = meshing.deviation_mm.value_or(share_mm);
+    parameters.Deflection =
+        meshing.deviation_mm ? *meshing.deviation_mm : meshing.deviation_share * longest_side(shape);
     parameters.Angle = meshing.angle_rad;
     parameters.InParallel = Standard_False;
     BRepMesh_IncrementalMesh(shape, parameters);

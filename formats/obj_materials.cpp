@@ -9,12 +9,8 @@
 namespace fretwork {
 
 std::string obj_material_name(const Rgb8& color) {
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string name = "c";
-    for (const std::uint8_t channel : color) {
-        name += kDigits[channel >> 4];
-        name += kDigits[channel & 15];
-    }
+    std::string name = hex_color(color);
+    name[0] = 'c';
     return name;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/exemplar/color_space.h"
 #include "formats/png_writer.h"
 
 namespace fretwork {
@@ -16,8 +17,7 @@ constexpr std::uint16_t kOne = 65535;
 std::array<std::uint16_t, 256> make_linear_table() {
     std::array<std::uint16_t, 256> table{};
     for (std::size_t i = 0; i < table.size(); ++i) {
-        const double s = static_cast<double>(i) / 255.0;
-        const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+        const double linear = srgb_to_linear(static_cast<double>(i) / 255.0);
         table[i] = static_cast<std::uint16_t>(std::lround(kOne * linear));
     }
     return table;

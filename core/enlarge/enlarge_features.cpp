@@ -278,10 +278,4 @@ EnlargeResult enlarge_features(const SurfaceVoxels& shell, const GeodesicLinks& 
     return Enlarger(shell, links, solid, protect, feature, hole, run).run();
 }
 
-EnlargeResult enlarge_features(const SurfaceVoxels& shell, const SolidStates& solid,
-                               const std::vector<std::uint8_t>& protect, const EnlargeSettings& settings,
-                               const RunControl& run) {
-    return enlarge_features(shell, link_two_rings(shell, run), solid, protect, settings, run);
-}
-
 }  // namespace fretwork

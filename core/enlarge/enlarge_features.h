@@ -42,9 +42,5 @@ struct EnlargeResult {
 EnlargeResult enlarge_features(const SurfaceVoxels& shell, const GeodesicLinks& links, const SolidStates& solid,
                                const std::vector<std::uint8_t>& protect, const EnlargeSettings& settings,
                                const RunControl& run = {});
-/// The same, with links made for this call.
-EnlargeResult enlarge_features(const SurfaceVoxels& shell, const SolidStates& solid,
-                               const std::vector<std::uint8_t>& protect, const EnlargeSettings& settings,
-                               const RunControl& run = {});
 
 }  // namespace fretwork

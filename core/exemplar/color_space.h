@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 
 #include "core/exemplar/image.h"
@@ -10,14 +11,17 @@
 namespace fretwork {
 
 /// Linear light in [0, 1] of an encoded sRGB value in [0, 1].
-[[nodiscard]] inline float srgb_to_linear(float encoded) {
-    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+template <std::floating_point Real>
+[[nodiscard]] Real srgb_to_linear(Real encoded) {
+    return encoded <= Real(0.04045) ? encoded / Real(12.92)
+                                    : std::pow((encoded + Real(0.055)) / Real(1.055), Real(2.4));
 }
 
 /// Encoded sRGB value in [0, 1]; values outside are clamped.
-[[nodiscard]] inline float linear_to_srgb(float linear) {
-    const float v = std::clamp(linear, 0.0f, 1.0f);
-    return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
+template <std::floating_point Real>
+[[nodiscard]] Real linear_to_srgb(Real linear) {
+    const Real v = std::clamp(linear, Real(0), Real(1));
+    return v <= Real(0.0031308) ? Real(12.92) * v : Real(1.055) * std::pow(v, Real(1) / Real(2.4)) - Real(0.055);
 }
 
 /// Nearest 8-bit value of `unit` in [0, 1]; values outside are clamped.

@@ -1,12 +1,12 @@
 // CIE L*a*b* (D65): distances between colours about as people see them.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "core/base/vec.h"
+#include "core/exemplar/color_space.h"
 #include "core/exemplar/image.h"
 
 namespace fretwork {
@@ -22,10 +22,7 @@ inline constexpr double kXyzToRgb[3][3] = {
 
 [[nodiscard]] inline Lab srgb_to_lab(const Rgb8& color) {
     Vec3 linear;
-    for (int k = 0; k < 3; ++k) {
-        const double s = color[static_cast<std::size_t>(k)] / 255.0;
-        linear[k] = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-    }
+    for (int k = 0; k < 3; ++k) linear[k] = srgb_to_linear(color[static_cast<std::size_t>(k)] / 255.0);
     Vec3 f;
     for (int row = 0; row < 3; ++row) {
         double t = 0.0;
@@ -49,9 +46,7 @@ inline constexpr double kXyzToRgb[3][3] = {
     for (std::size_t row = 0; row < 3; ++row) {
         double linear = 0.0;
         for (std::size_t k = 0; k < 3; ++k) linear += kXyzToRgb[row][k] * xyz[k];
-        linear = std::min(std::max(linear, 0.0), 1.0);
-        const double s = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-        color[row] = static_cast<std::uint8_t>(std::lround(255.0 * s));
+        color[row] = static_cast<std::uint8_t>(std::lround(255.0 * linear_to_srgb(linear)));
     }
     return color;
 }

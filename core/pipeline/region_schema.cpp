@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/words.h"
 #include "core/pipeline/object_settings.h"
 #include "core/pipeline/settings_schema.h"
 
@@ -118,15 +119,7 @@ TriangleSetRegion read_triangles(TableReader& in) {
 }
 
 NamedRegion read_names(TableReader& in) {
-    NamedRegion region;
-    const std::string all = in.text("names").value_or(std::string{});
-    for (std::size_t at = 0; at <= all.size();) {
-        const std::size_t comma = std::min(all.find(',', at), all.size());
-        const std::size_t first = std::min(all.find_first_not_of(' ', at), comma);
-        const std::string name = all.substr(first, comma - first);
-        if (!name.empty()) region.names.push_back(name.substr(0, name.find_last_not_of(' ') + 1));
-        at = comma + 1;
-    }
+    NamedRegion region{words_between_commas(in.text("names").value_or(std::string{}))};
     if (region.names.empty())
         throw InvalidSetting(in.where() + ": a region of shape 'named' needs 'names', such as \"Face1, Face2\"");
     return region;

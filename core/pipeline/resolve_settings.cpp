@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kLeastSideMm = 5.0, kMostSideMm = 5000.0;
 constexpr double kLeastWallVoxels = 2.0, kLeastRadiusVoxels = 1.5;
-constexpr int kDefaultResolution = 256;
 // A width that is a whole number of voxels may come out a rounding error below it.
 constexpr double kSlack = 1.0 - 1e-9;
 

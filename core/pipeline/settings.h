@@ -74,6 +74,9 @@ struct ExemplarOptions {
     int max_side_px = 1024;
 };
 
+/// Voxels along the longest side where neither their number nor their size is asked for.
+inline constexpr int kDefaultResolution = 256;
+
 struct ShellOptions {
     std::optional<double> thickness_mm;
     std::optional<WallSide> side;

@@ -131,6 +131,35 @@ TEST_CASE("cad: a deviation in millimetres bounds the distance from the true fac
     }
 }
 
+TEST_CASE("cad: triangles follow the voxels that a carve asks for", "[formats][cad]") {
+    const std::string bytes = brep_of(BRepPrimAPI_MakeSphere(10.0).Shape());
+    const auto depth_in_voxels = [&](const Settings& settings, double voxel_mm) {
+        CadMeshing meshing = meshing_for(settings);
+        meshing.angle_rad = 1.5;  // so that the distance decides
+        double deepest = 0.0;
+        const MeshFile file = read_cad(bytes, CadFormat::kBrep, "ball", meshing);
+        for (const Triangle& t : file.mesh.triangles) {
+            Vec3 center = Vec3::Zero();
+            for (const std::uint32_t v : t) center += file.mesh.positions_mm[v] / 3.0;
+            deepest = std::max(deepest, 10.0 - center.norm());
+        }
+        return deepest / voxel_mm;
+    };
+    // OpenCASCADE measures along edges; the middle of a triangle lies up to half as far again.
+    const auto a_tenth = [](double depth) { return depth > 0.01 && depth < 0.15; };
+    Settings settings;
+    CHECK(a_tenth(depth_in_voxels(settings, 20.0 / kDefaultResolution)));
+    settings.shell.resolution = 64;
+    CHECK(a_tenth(depth_in_voxels(settings, 20.0 / 64.0)));
+    settings.shell.resolution.reset();
+    settings.shell.voxel_mm = 0.5;
+    CHECK(a_tenth(depth_in_voxels(settings, 0.5)));
+    settings.input.scale = 4.0;  // the file's own voxels are a fourth
+    CHECK(a_tenth(depth_in_voxels(settings, 0.125)));
+    settings.input.size_mm = 40.0;  // twice the ball of 20 mm
+    CHECK(a_tenth(depth_in_voxels(settings, 0.25)));
+}
+
 TEST_CASE("cad: the same file gives the same mesh", "[formats][cad][determinism]") {
     const std::string bytes = brep_of(plate());
     const MeshFile first = read_cad(bytes, CadFormat::kBrep, "a"), second = read_cad(bytes, CadFormat::kBrep, "b");

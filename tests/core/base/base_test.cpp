@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/run_control.h"
+#include "core/base/words.h"
 
 namespace fretwork {
 namespace {
@@ -78,6 +79,14 @@ TEST_CASE("RunControl: slices map to the whole and a stop request is honoured", 
     source.request_stop();
     CHECK_THROWS_AS(run.checkpoint("stage", 0.0), Cancelled);
     CHECK_THROWS_AS(run.slice(0, 0.1).throw_if_stopped(), Cancelled);
+}
+
+TEST_CASE("words between commas: without the blanks around them, and no empty ones", "[base]") {
+    using Words = std::vector<std::string>;
+    CHECK(words_between_commas("a, b c,,d ") == Words{"a", "b c", "d"});
+    CHECK(words_between_commas(" , ,").empty());
+    CHECK(words_between_commas("").empty());
+    CHECK(words_between_commas("x") == Words{"x"});
 }
 
 }  // namespace

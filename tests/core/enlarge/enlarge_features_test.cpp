@@ -35,6 +35,12 @@ Distance on_sphere(double radius_mm) {
     };
 }
 
+/// With links made for the call.
+EnlargeResult enlarge(const SurfaceVoxels& shell, const SolidStates& solid, const std::vector<std::uint8_t>& protect,
+                      const EnlargeSettings& settings, const RunControl& run = {}) {
+    return enlarge_features(shell, link_two_rings(shell), solid, protect, settings, run);
+}
+
 SolidStates paint(const SurfaceVoxels& shell, const std::function<bool(const Vec3&)>& solid) {
     SolidStates states(shell.size());
     for (std::size_t v = 0; v < shell.size(); ++v)
@@ -191,7 +197,7 @@ TEST_CASE("enlarge: threads of one voxel on a plate become as wide as asked, no 
     const double width = GENERATE(3.0, 5.0, 8.0);
     CAPTURE(width);
     const EnlargeSettings settings{.min_feature_mm = width * voxel, .min_hole_mm = 3.0 * voxel};
-    const EnlargeResult result = enlarge_features(shell, cross, {}, settings);
+    const EnlargeResult result = enlarge(shell, cross, {}, settings);
     check_promises(shell, result, settings, flat);
     for (std::size_t v = 0; v < shell.size(); ++v) {
         const Vec3& p = shell.points_mm[v];
@@ -211,7 +217,7 @@ TEST_CASE("enlarge: a pattern that is good already stays as it is", "[enlarge]")
         const double x = std::remainder(p.x(), 20.0), y = std::remainder(p.y(), 20.0);
         return std::hypot(x, y) > 5.4;
     });
-    const EnlargeResult result = enlarge_features(shell, holes, {}, {.min_feature_mm = 4.0, .min_hole_mm = 4.0});
+    const EnlargeResult result = enlarge(shell, holes, {}, {.min_feature_mm = 4.0, .min_hole_mm = 4.0});
     CHECK(result.solid == holes);
     CHECK(result.voxels_enlarged == 0);
     CHECK(result.voxels_filled == 0);
@@ -227,8 +233,7 @@ TEST_CASE("enlarge: slits narrower than the least hole close, wider ones stay", 
         const bool narrow = std::abs(p.x() - 10.0) < 0.9 * voxel, wide = std::abs(p.x() - 28.0) < 3.6 * voxel;
         return !(within && (narrow || wide));
     });
-    const EnlargeResult result =
-        enlarge_features(shell, slits, {}, {.min_feature_mm = 4.0 * voxel, .min_hole_mm = 4.0 * voxel});
+    const EnlargeResult result = enlarge(shell, slits, {}, {.min_feature_mm = 4.0 * voxel, .min_hole_mm = 4.0 * voxel});
     std::size_t narrow_left = 0, wide_left = 0;
     for (std::size_t v = 0; v < shell.size(); ++v)
         if (result.solid[v] == SolidState::kEmpty) ++(shell.points_mm[v].x() < 19.0 ? narrow_left : wide_left);
@@ -244,14 +249,13 @@ TEST_CASE("enlarge: keeps every promise on random patterns", "[enlarge][property
     SECTION("on a plate") {
         const SurfaceVoxels shell = voxelize(make_square(36.0), {.resolution = 36});
         const EnlargeSettings settings{.min_feature_mm = feature, .min_hole_mm = 3.0};
-        check_promises(shell, enlarge_features(shell, paint(shell, random_blobs(seed, 9.0)), {}, settings), settings,
-                       flat);
+        check_promises(shell, enlarge(shell, paint(shell, random_blobs(seed, 9.0)), {}, settings), settings, flat);
     }
     SECTION("on a sphere") {
         const double radius = 10.0;
         const SurfaceVoxels shell = voxelize(make_icosphere(radius, 4), {.resolution = 24});
         const EnlargeSettings settings{.min_feature_mm = feature, .min_hole_mm = 3.0};
-        check_promises(shell, enlarge_features(shell, paint(shell, random_blobs(seed, 9.0)), {}, settings), settings,
+        check_promises(shell, enlarge(shell, paint(shell, random_blobs(seed, 9.0)), {}, settings), settings,
                        on_sphere(radius));
     }
 }
@@ -263,7 +267,7 @@ TEST_CASE("enlarge: drops specks, joins islands, counts both", "[enlarge]") {
         const bool speck = std::abs(p.x() - 20.0) < 0.6 && std::abs(p.y() - 20.0) < 0.6;
         return left || right || speck;
     });
-    const EnlargeResult result = enlarge_features(shell, states, {}, {.min_feature_mm = 4.0, .min_hole_mm = 4.0});
+    const EnlargeResult result = enlarge(shell, states, {}, {.min_feature_mm = 4.0, .min_hole_mm = 4.0});
     CHECK(result.islands_dropped == 1);
     CHECK(result.islands_joined == 1);
     CHECK(result.components == 1);
@@ -276,7 +280,7 @@ TEST_CASE("enlarge: two parts of an object each get one piece, also where the pa
     const SurfaceVoxels shell = voxelize(two, {.resolution = 40});
     const SolidStates left_only =
         paint(shell, [](const Vec3& p) { return p.x() < 10.0 && std::sin(2.0 * p.z()) > 0.0; });
-    const EnlargeResult result = enlarge_features(shell, left_only, {}, {.min_feature_mm = 2.0, .min_hole_mm = 2.0});
+    const EnlargeResult result = enlarge(shell, left_only, {}, {.min_feature_mm = 2.0, .min_hole_mm = 2.0});
     CHECK(result.components == 2);
     CHECK(count_pieces(shell, result.solid) == 2);
 }
@@ -287,7 +291,7 @@ TEST_CASE("enlarge: protected voxels keep their state", "[enlarge][property]") {
     const SolidStates states = paint(shell, random_blobs(seed, 7.0));
     std::vector<std::uint8_t> protect(shell.size(), 0);
     for (std::size_t v = 0; v < shell.size(); ++v) protect[v] = shell.points_mm[v].x() < 12.0 ? 1 : 0;
-    const EnlargeResult result = enlarge_features(shell, states, protect, {.min_feature_mm = 4.0, .min_hole_mm = 4.0});
+    const EnlargeResult result = enlarge(shell, states, protect, {.min_feature_mm = 4.0, .min_hole_mm = 4.0});
     std::size_t changed = 0;
     for (std::size_t v = 0; v < shell.size(); ++v) {
         if (protect[v] != 0) CHECK(result.solid[v] == states[v]);
@@ -303,7 +307,7 @@ TEST_CASE("enlarge: the same for any number of threads", "[enlarge]") {
     SolidStates first;
     for (const int threads : {1, 2, 4}) {
         const ThreadLimit limit(threads);
-        const EnlargeResult result = enlarge_features(shell, states, {}, settings);
+        const EnlargeResult result = enlarge(shell, states, {}, settings);
         if (first.empty()) first = result.solid;
         CHECK(result.solid == first);
     }
@@ -313,7 +317,7 @@ TEST_CASE("enlarge: says what cannot be met", "[enlarge]") {
     const SurfaceVoxels shell = voxelize(make_square(20.0), {.resolution = 20});
     const SolidStates all(shell.size(), SolidState::kSolid);
     const auto run = [&](double feature, double hole) {
-        return enlarge_features(shell, all, {}, {.min_feature_mm = feature, .min_hole_mm = hole});
+        return enlarge(shell, all, {}, {.min_feature_mm = feature, .min_hole_mm = hole});
     };
     CHECK_THROWS_AS(run(0.0, 3.0), InvalidSetting);
     CHECK_THROWS_AS(run(3.0, -1.0), InvalidSetting);
@@ -321,8 +325,8 @@ TEST_CASE("enlarge: says what cannot be met", "[enlarge]") {
     CHECK_THROWS_AS(run(1.9, 3.0), ConstraintsNotMet);
     CHECK_THROWS_AS(run(3.0, 0.8), ConstraintsNotMet);
     CHECK_THROWS_AS(run(11.0, 3.0), ConstraintsNotMet);
-    CHECK_THROWS_AS(enlarge_features(shell, SolidStates(3), {}, {}), InvalidInput);
-    CHECK_THROWS_AS(enlarge_features({}, {}, {}, {}), InvalidInput);
+    CHECK_THROWS_AS(enlarge(shell, SolidStates(3), {}, {}), InvalidInput);
+    CHECK_THROWS_AS(enlarge({}, {}, {}, {}), InvalidInput);
     // The resolution it names is enough.
     try {
         run(1.0, 3.0);
@@ -331,8 +335,8 @@ TEST_CASE("enlarge: says what cannot be met", "[enlarge]") {
         const std::string text = error.what();
         const int resolution = std::stoi(text.substr(text.find("resolution to ") + 14));
         const SurfaceVoxels finer = voxelize(make_square(20.0), {.resolution = resolution});
-        CHECK_NOTHROW(enlarge_features(finer, SolidStates(finer.size(), SolidState::kSolid), {},
-                                       {.min_feature_mm = 1.0, .min_hole_mm = 3.0}));
+        CHECK_NOTHROW(enlarge(finer, SolidStates(finer.size(), SolidState::kSolid), {},
+                              {.min_feature_mm = 1.0, .min_hole_mm = 3.0}));
     }
 }
 
@@ -341,14 +345,14 @@ TEST_CASE("enlarge: stops when asked and reports progress in order", "[enlarge]"
     const SolidStates states = paint(shell, random_blobs(2, 6.0));
     const EnlargeSettings settings{.min_feature_mm = 2.5, .min_hole_mm = 2.5};
     double last = 0.0;
-    enlarge_features(shell, states, {}, settings, RunControl([&](std::string_view, double fraction) {
-                         CHECK(fraction >= last);
-                         last = fraction;
-                     }));
+    enlarge(shell, states, {}, settings, RunControl([&](std::string_view, double fraction) {
+                CHECK(fraction >= last);
+                last = fraction;
+            }));
     CHECK(last == 1.0);
     std::stop_source source;
     source.request_stop();
-    CHECK_THROWS_AS(enlarge_features(shell, states, {}, settings, RunControl(nullptr, source.get_token())), Cancelled);
+    CHECK_THROWS_AS(enlarge(shell, states, {}, settings, RunControl(nullptr, source.get_token())), Cancelled);
 }
 
 }  // namespace
