@@ -96,6 +96,9 @@ class Placer {
     void place_constellation(const std::vector<amf::Instance>& instances, const Eigen::Affine3d& outer,
                              std::size_t depth) {
         for (const amf::Instance& instance : instances) {
+            // Also those that lead to nothing: a tree of them costs time all the same.
+            if (++placed_ > kMaxPlaced)
+                fail_parse(source_, place_of_line(instance.line), "over 16384 placed instances", "fewer");
             if (depth > kMaxDepth)
                 fail_parse(source_, place_of_line(instance.line), "constellations over 8 levels deep", "fewer");
             const Eigen::Affine3d transform = outer * instance.transform;
@@ -115,7 +118,6 @@ class Placer {
     void place_object(const amf::Object& object, const Eigen::Affine3d& transform, std::size_t line) {
         run_.throw_if_stopped();
         TriangleMesh& mesh = file_.mesh;
-        if (++placed_ > kMaxPlaced) fail_parse(source_, place_of_line(line), "over 16384 placed objects", "fewer");
         const std::size_t most = std::max(kFreeTriangles, 2 * stored_triangles_);
         if (mesh.triangles.size() + object.mesh.triangles.size() > most)
             fail_parse(source_, place_of_line(line), "more placed triangles than " + std::to_string(most), "fewer");
@@ -150,7 +152,7 @@ class Placer {
     std::string source_;
     const RunControl& run_;
     std::size_t stored_triangles_ = 0;
-    std::size_t placed_ = 0;
+    std::size_t placed_ = 0;  ///< instances, of objects and of constellations
     MeshFile file_;
 };
 

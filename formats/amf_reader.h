@@ -14,7 +14,7 @@ namespace fretwork {
 /// Curved triangles are taken as flat, colours given as formulas and textures are left out; each with a warning.
 /// \param source  name for messages
 /// \throws InvalidInput  with line, found and expected; also constellations that hold each other, over 8 levels or
-///                       over 16384 placed objects.
+///                       over 16384 placed instances.
 MeshFile read_amf(std::string_view bytes, std::string_view source, const RunControl& run = {});
 
 }  // namespace fretwork

@@ -157,6 +157,12 @@ TEST_CASE("amf: constellations that double at every level are refused at once", 
         wide += "</constellation>";
     }
     CHECK_THROWS_AS(read(amf(wide)), InvalidInput);
+    // Trees that hold no triangle, or nothing at all, are endless too.
+    for (const std::string leaf : {"<object id=\"0\"/>", "<constellation id=\"0\"/>"}) {
+        std::string bare = object("solid") + leaf + wide.substr(object("0").size());
+        CAPTURE(leaf);
+        CHECK_THROWS_WITH(read(amf(bare)), Catch::Contains("16384"));
+    }
 }
 
 }  // namespace
