@@ -47,11 +47,16 @@ struct LowestRegion {
     double share;
 };  ///< lowest part of the height (z), share in (0, 1]
 struct EverywhereRegion {};
+/// What a closed surface encloses, its border included: a face of the model that lies on it is inside.
+/// In the coordinates of the model's file until it is asked, as triangle sets are.
+struct VolumeRegion {
+    TriangleMesh surface;
+};
 
 struct Region {
     std::string name;
     std::variant<BoxRegion, SphereRegion, CylinderRegion, HalfSpaceRegion, PlaneBandRegion, SharpEdgeRegion,
-                 OpenBorderRegion, TriangleSetRegion, NamedRegion, LowestRegion, EverywhereRegion>
+                 OpenBorderRegion, TriangleSetRegion, NamedRegion, LowestRegion, EverywhereRegion, VolumeRegion>
         shape;
 };
 
@@ -68,7 +73,8 @@ class RegionField {
     /// \param outside_of  if there are any, everything outside of all of them belongs to the union too: what
     ///                    the user leaves when only these may be carved
     /// \throws InvalidSetting  a radius or width that is not positive, a zero normal, an empty box, a
-    ///                         triangle past the end, a region that meets no part of the surface (by name).
+    ///                         triangle past the end, a volume that is not closed, a region that meets no part of the
+    ///                         surface (by name).
     RegionField(const TriangleMesh& mesh, std::vector<Region> regions, std::vector<Region> outside_of = {});
     ~RegionField();
     RegionField(RegionField&&) noexcept;

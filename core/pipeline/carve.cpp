@@ -170,8 +170,7 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
                          exemplar_facts(input.exemplar, input.exemplar_width_mm));
     note_resolved(settings, resolved, report);
     check_memory(result.surface, resolved, limits.max_memory_bytes);
-    const Settings local =
-        with_triangles_of(surface.source_triangles, {input.mesh.triangles.size(), input.named_triangles}, settings);
+    const Settings local = regions_on(surface, {input.mesh.triangles.size(), input.named_triangles}, settings);
     const RegionField keep_field = keep_regions(result.surface, local);
     const std::vector<Rgb8> kept = kept_colors(input, surface.source_triangles);
 
@@ -249,8 +248,7 @@ RunReport check_carve(const CarveInput& input, const Settings& settings, const R
     coarse.halvings = 0;
     const SurfaceVoxels shell = voxelize(surface.mesh, coarse, run.slice(0.8, 0.95));
     report.shell.components = component_count(shell);
-    const Settings local =
-        with_triangles_of(surface.source_triangles, {input.mesh.triangles.size(), input.named_triangles}, settings);
+    const Settings local = regions_on(surface, {input.mesh.triangles.size(), input.named_triangles}, settings);
     keep_regions(surface.mesh, local);
     intended_use(surface.mesh, shell, local, run);
     run.checkpoint("check", 1.0);

@@ -35,30 +35,35 @@ std::vector<std::uint32_t> triangles_named(const NamedRegion& region, const std:
     return triangles;
 }
 
-void turn_to(const std::vector<std::uint32_t>& source_triangles, const FileTriangles& file, Region& region) {
-    if (const auto* named = std::get_if<NamedRegion>(&region.shape))
-        region.shape = TriangleSetRegion{triangles_named(*named, region.name, file)};
-    auto* set = std::get_if<TriangleSetRegion>(&region.shape);
-    if (!set) return;
+/// Triangles of the repaired mesh that are part of those of the file.
+TriangleSetRegion repaired_set(const TriangleSetRegion& of_file, const std::string& name,
+                               const std::vector<std::uint32_t>& source_triangles, const FileTriangles& file) {
     std::vector<std::uint8_t> wanted(file.count, 0);
-    for (const std::uint32_t t : set->triangles) {
+    for (const std::uint32_t t : of_file.triangles) {
         if (t >= file.count)
             throw InvalidSetting(
-                fmt::format("region '{}' names triangle {}, and the model has {}", region.name, t, file.count));
+                fmt::format("region '{}' names triangle {}, and the model has {}", name, t, file.count));
         wanted[t] = 1;
     }
-    set->triangles.clear();
+    TriangleSetRegion set;
     for (std::uint32_t t = 0; t < source_triangles.size(); ++t)
-        if (wanted[source_triangles[t]]) set->triangles.push_back(t);
-    if (set->triangles.empty())
-        throw InvalidSetting(fmt::format("region '{}' names only triangles that repair has dropped", region.name));
+        if (wanted[source_triangles[t]]) set.triangles.push_back(t);
+    if (set.triangles.empty())
+        throw InvalidSetting(fmt::format("region '{}' names only triangles that repair has dropped", name));
+    return set;
 }
 
 }  // namespace
 
-Settings with_triangles_of(const std::vector<std::uint32_t>& source_triangles, const FileTriangles& file,
-                           Settings settings) {
-    const auto turn = [&](Region& region) { turn_to(source_triangles, file, region); };
+Settings regions_on(const PreparedSurface& surface, const FileTriangles& file, Settings settings) {
+    const auto turn = [&](Region& region) {
+        if (const auto* named = std::get_if<NamedRegion>(&region.shape))
+            region.shape = TriangleSetRegion{triangles_named(*named, region.name, file)};
+        if (const auto* set = std::get_if<TriangleSetRegion>(&region.shape))
+            region.shape = repaired_set(*set, region.name, surface.source_triangles, file);
+        if (auto* volume = std::get_if<VolumeRegion>(&region.shape))
+            for (Vec3& p : volume->surface.positions_mm) p = in_model_mm(p, settings.input.up, surface.scale);
+    };
     for (Region& region : settings.keep) turn(region);
     for (Region& region : settings.carve) turn(region);
     for (LoadOption& load : settings.loads) turn(load.region);

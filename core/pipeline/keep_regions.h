@@ -6,6 +6,7 @@
 
 #include "core/base/run_control.h"
 #include "core/mesh/region.h"
+#include "core/pipeline/prepare_surface.h"
 #include "core/pipeline/settings.h"
 #include "core/shell/surface_voxels.h"
 
@@ -17,12 +18,9 @@ struct FileTriangles {
     const std::vector<NamedTriangles>& named;
 };
 
-/// The settings with triangle sets and named regions, which speak of the file, turned to triangles of the repaired
-/// mesh.
-/// \param source_triangles  triangle of the file that each triangle of the mesh is part of
+/// The settings with what speaks of the file (triangle sets, names, volumes) turned to the surface that is carved.
 /// \throws InvalidSetting   a triangle or name that the file does not have, or none of a set left
-Settings with_triangles_of(const std::vector<std::uint32_t>& source_triangles, const FileTriangles& file,
-                           Settings settings);
+Settings regions_on(const PreparedSurface& surface, const FileTriangles& file, Settings settings);
 
 /// The regions of [[keep]], and the complement of those of [[carve]] where there are any.
 /// \throws InvalidSetting  a region that meets no part of the surface, by name.

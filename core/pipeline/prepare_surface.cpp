@@ -12,7 +12,6 @@
 namespace fretwork {
 namespace {
 
-/// Quarter and half turns only, so that coordinates stay exact.
 Vec3 turned_up(const Vec3& p, UpAxis up) {
     switch (up) {
         case UpAxis::kX:
@@ -33,12 +32,16 @@ Vec3 turned_up(const Vec3& p, UpAxis up) {
 
 }  // namespace
 
+Vec3 in_model_mm(const Vec3& file_point, UpAxis up, double scale) {
+    return scale * turned_up(file_point, up);
+}
+
 PreparedSurface prepare_surface(const TriangleMesh& mesh, const InputOptions& input, CountSelfIntersections count,
                                 const RunControl& run) {
     PreparedSurface surface;
     surface.scale = input_scale(mesh, input);
     TriangleMesh scaled = mesh;
-    for (Vec3& p : scaled.positions_mm) p = surface.scale * turned_up(p, input.up);
+    for (Vec3& p : scaled.positions_mm) p = in_model_mm(p, input.up, surface.scale);
 
     RepairedMesh repaired = repair_mesh(scaled, {}, run.slice(0.0, 0.4));
     surface.found = report_mesh(scaled, CountSelfIntersections::kNo, run.slice(0.4, 0.5));

@@ -21,6 +21,10 @@ struct PreparedSurface {
     std::vector<std::string> warnings;            ///< what was wrong and what was done, with counts
 };
 
+/// Where a point of the model's file is on the surface that is carved. Quarter and half turns only, so that
+/// coordinates stay exact.
+Vec3 in_model_mm(const Vec3& file_point, UpAxis up, double scale);
+
 /// \param count  whether to look for self-intersections, which takes most of the time and changes nothing but the
 ///               report and the warnings
 /// \throws InvalidInput       no usable triangle.

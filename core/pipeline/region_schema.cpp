@@ -118,6 +118,32 @@ TriangleSetRegion read_triangles(TableReader& in) {
     return region;
 }
 
+/// Numbers in groups of three.
+std::vector<double> triples(TableReader& in, std::string_view key) {
+    std::vector<double> list = in.required(key, 0, "volume");
+    if (list.size() % 3 != 0)
+        throw InvalidSetting(
+            fmt::format("{}: {}: expected three numbers for each, found {} numbers", in.where(), key, list.size()));
+    return list;
+}
+
+VolumeRegion read_volume(TableReader& in) {
+    VolumeRegion region;
+    const std::vector<double> vertices = triples(in, "vertices"), corners = triples(in, "corners");
+    for (std::size_t i = 0; i < vertices.size(); i += 3)
+        region.surface.positions_mm.emplace_back(vertices[i], vertices[i + 1], vertices[i + 2]);
+    const std::size_t count = region.surface.positions_mm.size();
+    for (const double index : corners)
+        if (index < 0 || index >= static_cast<double>(count) || index != std::floor(index))
+            throw InvalidSetting(
+                fmt::format("{}: corners: {:g} is not the number of one of the {} vertices", in.where(), index, count));
+    for (std::size_t i = 0; i < corners.size(); i += 3)
+        region.surface.triangles.push_back({static_cast<std::uint32_t>(corners[i]),
+                                            static_cast<std::uint32_t>(corners[i + 1]),
+                                            static_cast<std::uint32_t>(corners[i + 2])});
+    return region;
+}
+
 NamedRegion read_names(TableReader& in) {
     NamedRegion region{words_between_commas(in.text("names").value_or(std::string{}))};
     if (region.names.empty())
@@ -156,6 +182,8 @@ Region read_region(TableReader& in) {
         region.shape = LowestRegion{share};
     } else if (shape == "everywhere")
         region.shape = EverywhereRegion{};
+    else if (shape == "volume")
+        region.shape = read_volume(in);
     else {
         std::vector<std::string> known;
         for (const RegionShapeInfo& info : region_shapes()) known.push_back(info.shape);
@@ -215,6 +243,13 @@ struct ShapeWriter {
     void operator()(const NamedRegion& r) const { put("names", fmt::format("{}", fmt::join(r.names, ", "))); }
     void operator()(const LowestRegion& r) const { put("share", r.share); }
     void operator()(const EverywhereRegion&) const {}
+    void operator()(const VolumeRegion& r) const {
+        std::vector<double> vertices, corners;
+        for (const Vec3& p : r.surface.positions_mm) vertices.insert(vertices.end(), {p[0], p[1], p[2]});
+        for (const Triangle& t : r.surface.triangles)
+            for (const std::uint32_t v : t) corners.push_back(v);
+        put("vertices", std::move(vertices)), put("corners", std::move(corners));
+    }
 };
 
 SettingTable table_from(const char* array, const Region& region) {
@@ -277,6 +312,12 @@ std::span<const RegionShapeInfo> region_shapes() {
          {{"share", 1, "Of the height, above 0 and up to 1."}},
          "share = 0.05"},
         {"everywhere", "The whole surface.", {}, ""},
+        {"volume",
+         "What a closed surface encloses, in the coordinates of the model's file; marks in OpenSCAD files become "
+         "these.",
+         {{"vertices", 0, "x, y, z of one vertex after the other."},
+          {"corners", 0, "Three numbers of vertices for each triangle, counted from 0."}},
+         "vertices = [0, 0, 0, 9, 0, 0, 0, 9, 0, 0, 0, 9], corners = [0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3]"},
     };
     return shapes;
 }

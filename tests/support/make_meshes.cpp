@@ -95,8 +95,9 @@ TriangleMesh make_square(double side_mm, int cells) {
 
 TriangleMesh make_box(const Vec3& min_mm, const Vec3& max_mm, const std::array<int, 3>& cells) {
     BlockLattice lattice;
-    for (int axis = 0; axis < 3; ++axis) {
-        lattice.lines_mm[axis] = {min_mm[axis], max_mm[axis]};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<Eigen::Index>(axis);
+        lattice.lines_mm[axis] = {min_mm[a], max_mm[a]};
         lattice.cells[axis] = {cells[axis]};
     }
     return block_mesh(lattice, [](const std::array<int, 3>&) { return Block::solid(); });
@@ -109,7 +110,7 @@ TriangleMesh make_thin_plate(double width_mm, double depth_mm, double thickness_
 TriangleMesh make_frame(double side_mm, double bar_mm, int cells_per_bar) {
     BlockLattice lattice;
     const int across = std::max(1, static_cast<int>(std::lround((side_mm - 2 * bar_mm) / bar_mm * cells_per_bar)));
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
         lattice.lines_mm[axis] = {0.0, bar_mm, side_mm - bar_mm, side_mm};
         lattice.cells[axis] = {cells_per_bar, across, cells_per_bar};
     }

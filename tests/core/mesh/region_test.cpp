@@ -69,7 +69,8 @@ TEST_CASE("regions: a distance never exceeds the way to the border", "[mesh][pro
                                         {"half", HalfSpaceRegion{Vec3(1, 1, 4), Vec3(1, 2, 3)}},
                                         {"band", PlaneBandRegion{Vec3(1, 1, 4), Vec3(3, -2, 1), 1.0}},
                                         {"edges", SharpEdgeRegion{30, 1.0}},
-                                        {"foot", LowestRegion{0.3}}};
+                                        {"foot", LowestRegion{0.3}},
+                                        {"volume", VolumeRegion{make_icosphere(4.0, 2, Vec3(3, 2, 8))}}};
     std::vector<Vec3> points;
     for (std::uint64_t i = 0; i < 200; ++i) {
         Vec3 p;
@@ -89,6 +90,45 @@ TEST_CASE("regions: a distance never exceeds the way to the border", "[mesh][pro
         CHECK(inside > 0);
         CHECK(inside < points.size());
     }
+}
+
+/// How far a volume reaches beyond its surface, so that faces that lie on it are inside.
+constexpr double kTouchMm = 0.01;
+
+TEST_CASE("regions: a volume is the shape that it encloses, and the faces that lie on it", "[mesh]") {
+    const BoxRegion plain{Vec3(2, 2, -1), Vec3(8, 6, 1)};
+    const Region volume{"volume", VolumeRegion{make_box(plain.min_mm, plain.max_mm, {3, 2, 1})}};
+    const RegionField expected(box(), {{"box", plain}}), field(box(), {volume});
+    for (std::uint64_t i = 0; i < 500; ++i) {
+        Vec3 p;
+        for (std::uint32_t k = 0; k < 3; ++k)
+            p[k] = 14 * unit_interval(counter_random(5, RandomStream::kTest, 0, i, k)) - 2;
+        CHECK(field.signed_distance_mm(p, 0) == Approx(expected.signed_distance_mm(p, 0) - kTouchMm).margin(1e-9));
+    }
+    // Below the box, and flush with it: the bottom is inside, the sides are not.
+    const Region flush{"flush", VolumeRegion{make_box(Vec3(2, 2, -3), Vec3(8, 6, 0), {1, 1, 1})}};
+    CHECK(at(box(), flush, Vec3(5, 4, 0)) < 0.0);
+    CHECK(at(box(), flush, Vec3(5, 7, 0)) == Approx(1.0 - kTouchMm));
+    // Inside out, it is the same volume.
+    VolumeRegion turned{make_box(plain.min_mm, plain.max_mm, {1, 1, 1})};
+    for (Triangle& t : turned.surface.triangles) std::swap(t[0], t[1]);
+    CHECK(at(box(), {"turned", turned}, Vec3(5, 4, 0)) == Approx(-1.0 - kTouchMm));
+}
+
+TEST_CASE("regions: a volume meets the surface with its inside, a corner, or an edge through a face", "[mesh]") {
+    const auto meets = [](const Vec3& min, const Vec3& max) {
+        try {
+            RegionField(box(), {{"v", VolumeRegion{make_box(min, max, {1, 1, 1})}}});
+            return true;
+        } catch (const InvalidSetting&) {
+            return false;
+        }
+    };
+    CHECK(meets(Vec3(-1, -1, -1), Vec3(11, 11, 11)));       // holds all of it
+    CHECK(meets(Vec3(1.2, 1.2, 1), Vec3(1.4, 1.4, 12)));    // pierces a triangle between its vertices
+    CHECK(meets(Vec3(1.2, 1.2, 10), Vec3(1.4, 1.4, 12)));   // stands on it
+    CHECK_FALSE(meets(Vec3(1, 1, 1), Vec3(9, 9, 9)));       // within the hollow
+    CHECK_FALSE(meets(Vec3(1, 1, 10.02), Vec3(9, 9, 12)));  // above it
 }
 
 TEST_CASE("regions: sharp edges and borders", "[mesh]") {
@@ -196,6 +236,10 @@ TEST_CASE("regions: what cannot be meant is refused by name", "[mesh]") {
     refused({"o", OpenBorderRegion{1}}, "closed");
     refused({"p", TriangleSetRegion{}}, "names no triangle");
     refused({"q", TriangleSetRegion{{0, 300}}}, "names triangle 300, but the mesh has 300 triangles");
+    refused({"t", VolumeRegion{}}, "no triangle");
+    refused({"u", VolumeRegion{make_square(10, 1)}}, "not closed: 4 edges");
+    refused({"v", VolumeRegion{{{Vec3(nan, 0, 0)}, {{0, 0, 0}}}}}, "not finite");
+    refused({"w", VolumeRegion{{{Vec3(0, 0, 0)}, {{0, 1, 0}}}}}, "vertex 1, and there are 1");
     refused({"r", LowestRegion{0}}, "share is 0");
     refused({"s", LowestRegion{1.5}}, "share is 1.5");
     CHECK_THROWS_AS(RegionField(TriangleMesh{}, {}), InvalidInput);

@@ -4,12 +4,19 @@
 #include <catch2/catch.hpp>
 
 #include "core/base/error.h"
+#include "support/make_meshes.h"
 
 namespace fretwork {
 namespace {
 
 std::vector<std::uint32_t> triangles_of(const Settings& settings) {
     return std::get<TriangleSetRegion>(settings.keep.at(0).shape).triangles;
+}
+
+PreparedSurface prepared(std::vector<std::uint32_t> source_triangles) {
+    PreparedSurface surface;
+    surface.source_triangles = std::move(source_triangles);
+    return surface;
 }
 
 TEST_CASE("regions: names of faces and parts stand for their triangles", "[pipeline]") {
@@ -20,7 +27,7 @@ TEST_CASE("regions: names of faces and parts stand for their triangles", "[pipel
     const auto turned = [&](std::vector<std::string> names) {
         Settings settings;
         settings.keep.push_back({"top", NamedRegion{std::move(names)}});
-        return triangles_of(with_triangles_of(source, file, settings));
+        return triangles_of(regions_on(prepared(source), file, settings));
     };
     CHECK(turned({"Face1"}) == std::vector<std::uint32_t>{0});
     CHECK(turned({"Face2"}) == std::vector<std::uint32_t>{1, 2});
@@ -32,7 +39,7 @@ TEST_CASE("regions: names of faces and parts stand for their triangles", "[pipel
 TEST_CASE("regions: a name in a model without names is refused", "[pipeline][errors]") {
     Settings settings;
     settings.keep.push_back({"top", NamedRegion{{"Face1"}}});
-    CHECK_THROWS_AS(with_triangles_of({0, 1}, {2, {}}, settings), InvalidSetting);
+    CHECK_THROWS_AS(regions_on(prepared({0, 1}), {2, {}}, settings), InvalidSetting);
 }
 
 TEST_CASE("regions: named ones are turned wherever regions stand", "[pipeline]") {
@@ -42,9 +49,23 @@ TEST_CASE("regions: named ones are turned wherever regions stand", "[pipeline]")
     settings.carve.push_back(region);
     settings.loads.push_back({region, "a", Vec3(0, 0, 1), 0.0});
     settings.fixtures.push_back({region, ""});
-    const Settings local = with_triangles_of({0, 1}, {2, named}, settings);
+    const Settings local = regions_on(prepared({0, 1}), {2, named}, settings);
     for (const Region* turned : {&local.carve[0], &local.loads[0].region, &local.fixtures[0].region})
         CHECK(std::get<TriangleSetRegion>(turned->shape).triangles == std::vector<std::uint32_t>{1});
+}
+
+TEST_CASE("regions: a volume is turned and scaled with its model", "[pipeline]") {
+    const TriangleMesh box = testing::make_box(Vec3(1, 2, 3), Vec3(4, 5, 9), {1, 1, 1});
+    Settings settings;
+    settings.input.up = UpAxis::kY;
+    settings.input.size_mm = 50.0;
+    settings.keep.push_back({"block", VolumeRegion{box}});
+    const PreparedSurface surface = prepare_surface(box, settings.input);
+    const Settings local = regions_on(surface, {box.triangles.size(), {}}, settings);
+    const TriangleMesh& moved = std::get<VolumeRegion>(local.keep[0].shape).surface;
+    REQUIRE(moved.positions_mm.size() == surface.mesh.positions_mm.size());
+    for (std::size_t v = 0; v < moved.positions_mm.size(); ++v)
+        CHECK(moved.positions_mm[v] == surface.mesh.positions_mm[v]);
 }
 
 }  // namespace

@@ -129,6 +129,8 @@ SettingTable table_of(const char* array, const char* shape) {
             std::vector<double> numbers;
             for (int i = 0; i < std::max(key.numbers, 1); ++i) numbers.push_back(next *= 2.0);
             if (info.shape == "triangles") numbers = {0, 5, 9};
+            if (key.key == "vertices") numbers = {0, 0, 0, 1.5, 0, 0, 0, 2.5, 0};
+            if (key.key == "corners") numbers = {2, 0, 1};
             if (key.numbers == 1)
                 table.entries.push_back({key.key, numbers[0], ""});
             else
