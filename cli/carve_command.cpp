@@ -51,13 +51,14 @@ PatternOptions with_own_flags(const CarveOptions& options) {
     return pattern;
 }
 
-/// The file's own spec is the first word, a spec of --pattern the second, flags the last.
+/// The file's own spec is the first word, then its marks, then a spec of --pattern, flags last.
 CarveRequest request_of_scad(const std::string& path, PatternOptions pattern, const RunControl& run) {
     const ScadOptions scad_options = take_scad_options(pattern);
     pattern.parameters_of_model = true;
-    ScadModel scad = render_scad(path, scad_options, run);
+    ScadModel scad = render_scad(path, scad_options, ScadMarks::kRender, run);
     SpecDocument document;
     if (scad.spec) document = anchored(path, read_spec_toml(*scad.spec, path));
+    std::ranges::move(scad.marks, std::back_inserter(document.tables));
     const SpecDocument more = spec_of(pattern);
     document.assignments.insert(document.assignments.end(), more.assignments.begin(), more.assignments.end());
     document.tables.insert(document.tables.end(), more.tables.begin(), more.tables.end());

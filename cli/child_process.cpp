@@ -7,10 +7,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 
 #include "core/base/error.h"
 
@@ -46,10 +48,30 @@ class Pipe {
     std::array<int, 2> ends_{-1, -1};
 };
 
-pid_t start(const std::vector<std::string>& arguments, const Pipe& out, const Pipe& err) {
-    std::vector<char*> argv;
-    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-    argv.push_back(nullptr);
+/// As the calls of the system take lists of texts.
+std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
+    std::vector<char*> pointers;
+    for (const std::string& text : texts) pointers.push_back(const_cast<char*>(text.c_str()));
+    pointers.push_back(nullptr);
+    return pointers;
+}
+
+/// Our environment with `variables` instead of those of the same name.
+std::vector<std::string> environment_with(std::vector<std::string> variables) {
+    const std::size_t own = variables.size();
+    for (char** entry = environ; *entry != nullptr; ++entry) {
+        const std::string_view text = *entry;
+        const std::string_view name = text.substr(0, text.find('=') + 1);
+        if (std::none_of(variables.begin(), variables.begin() + static_cast<std::ptrdiff_t>(own),
+                         [&](const std::string& v) { return v.starts_with(name); }))
+            variables.emplace_back(text);
+    }
+    return variables;
+}
+
+pid_t start(const std::vector<std::string>& arguments, const std::vector<std::string>& environment, const Pipe& out,
+            const Pipe& err) {
+    const std::vector<char*> argv = pointers_to(arguments), envp = pointers_to(environment);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -61,7 +83,7 @@ pid_t start(const std::vector<std::string>& arguments, const Pipe& out, const Pi
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     posix_spawnattr_setpgroup(&attributes, 0);
     pid_t child = 0;
-    const int failed = posix_spawnp(&child, argv[0], &actions, &attributes, argv.data(), environ);
+    const int failed = posix_spawnp(&child, argv[0], &actions, &attributes, argv.data(), envp.data());
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     if (failed != 0) throw FileError(fmt::format("{}: cannot be run: {}", arguments.front(), std::strerror(failed)));
@@ -96,9 +118,10 @@ void listen(const Pipe& out, const Pipe& err, ProcessResult& result, const RunCo
 
 }  // namespace
 
-ProcessResult run_process(const std::vector<std::string>& arguments, const RunControl& run) {
+ProcessResult run_process(const std::vector<std::string>& arguments, const RunControl& run,
+                          const std::vector<std::string>& variables) {
     Pipe out, err;
-    const pid_t child = start(arguments, out, err);
+    const pid_t child = start(arguments, environment_with(variables), out, err);
     out.close_writing();
     err.close_writing();
     ProcessResult result;

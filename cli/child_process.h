@@ -16,7 +16,9 @@ struct ProcessResult {
 
 /// Runs a program found along PATH, without standard input, and waits for it. A stop ends it and its children.
 /// \param arguments  the program first
+/// \param variables  NAME=VALUE of the environment that it sees beside and instead of ours
 /// \throws FileError  it cannot be started. \throws Cancelled
-ProcessResult run_process(const std::vector<std::string>& arguments, const RunControl& run);
+ProcessResult run_process(const std::vector<std::string>& arguments, const RunControl& run,
+                          const std::vector<std::string>& variables = {});
 
 }  // namespace fretwork::cli

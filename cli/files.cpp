@@ -83,7 +83,7 @@ LengthUnit unit_named(const std::string& name) {
 }
 
 ModelBytes read_bytes(const ModelSource& source, const RunControl& run) {
-    if (is_scad(source.path)) return render_scad(source.path, {}, run).model;
+    if (is_scad(source.path)) return render_scad(source.path, {}, ScadMarks::kLeaveOut, run).model;
     ModelBytes model;
     model.unit = unit_named(source.unit);
     const bool stream = source.path == kStream;

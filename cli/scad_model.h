@@ -6,19 +6,15 @@
 #include <vector>
 
 #include "cli/files.h"
+#include "cli/openscad.h"
 #include "cli/pattern_options.h"
 #include "core/base/run_control.h"
+#include "core/pipeline/setting_value.h"
 
 namespace fretwork::cli {
 
 /// Whether the path names an OpenSCAD file.
 bool is_scad(const std::string& path);
-
-/// What of the flags is for OpenSCAD, and what for Fretwork: keys of a spec hold a dot, variables of OpenSCAD do not.
-struct ScadOptions {
-    std::vector<std::string> defines;  ///< NAME=VALUE as given with -D
-    std::string parameter_file, parameter_set;
-};
 
 /// Moves what is for OpenSCAD out of `pattern`. Parameter sets stay, since they may hold keys of both kinds.
 ScadOptions take_scad_options(PatternOptions& pattern);
@@ -27,12 +23,15 @@ struct ScadModel {
     /// As OFF, in millimetres. Its warnings are what OpenSCAD has said, and variables that the file does not have.
     ModelBytes model;
     std::optional<std::string> spec;  ///< from the file's comment, see spec_in_scad
+    std::vector<SettingTable> marks;  ///< what the modules of fretwork.scad mark
 };
 
-/// Renders the file. OpenSCAD reports many errors on the side and ends as if all were well; these are found.
+enum class ScadMarks { kRender, kLeaveOut };
+
+/// Renders the file, and its marks on request.
 /// \throws FileError       the file cannot be opened, or OpenSCAD cannot be run.
-/// \throws InvalidInput    OpenSCAD reports an error or makes nothing.
+/// \throws InvalidInput    OpenSCAD reports an error or makes nothing; see render_marks.
 /// \throws InvalidSetting  a parameter set that does not exist, or holds a name that the file does not assign.
-ScadModel render_scad(const std::string& path, const ScadOptions& options, const RunControl& run);
+ScadModel render_scad(const std::string& path, const ScadOptions& options, ScadMarks marks, const RunControl& run);
 
 }  // namespace fretwork::cli

@@ -32,6 +32,7 @@ VIEWS = {
     "09_lampshade": (["09_lampshade"], ["--elevation", "12"]),
     "10_make": (["10_leafveins", "10_scales"], []),
     "11_slice": (["11_slice"], []),
+    "12_marks": (["12_marks"], ["--elevation", "25"]),
 }
 
 # Figures: name, model, further options of `carve`, options of `render`.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.h"
+#include "core/mesh/closest_point.h"
 #include "core/mesh/mesh_report.h"
 #include "formats/mesh_file.h"
 
@@ -119,6 +120,99 @@ TEST_CASE("openscad: what OpenSCAD warns of is passed on, and other commands rea
     REQUIRE(result.exit_code == 0);
     CHECK(result.err.find("size") != std::string::npos);
     CHECK(report_mesh(read_mesh(std::filesystem::path(folder / "part.stl")).mesh).max_mm == Vec3(20, 30, 40));
+}
+
+/// A plate that stands, with marks on it.
+const std::string kMarked =
+    "use <fretwork.scad>\n"
+    "fretwork_body() cube([60, 8, 60]);\n"
+    "fretwork_keep(\"foot\") translate([-1, -1, -1]) cube([62, 10, 13]);\n"
+    "fretwork_keep(\"hole\") translate([30, -1, 30]) rotate([-90, 0, 0]) cylinder(r = 9, h = 10, $fn = 32);\n"
+    "fretwork_load(\"top\", force_n = [0, 0, -25.5], case = \"press\") translate([0, 0, 55]) cube([60, 8, 9]);\n"
+    "fretwork_fixture() translate([0, 0, -2]) cube([60, 8, 2]);\n";
+
+const std::vector<std::string> kQuick = {
+    "--pattern", "hexagons", "--resolution", "48", "-D", "structure.max_iterations=2", "--quiet"};
+
+ProgramResult carve_quickly(const std::string& part, std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"carve", part};
+    arguments.insert(arguments.end(), kQuick.begin(), kQuick.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+}
+
+TEST_CASE("openscad: modules of fretwork.scad mark what is kept, pushed and held", "[cli][programs]") {
+    if (openscad_is_missing()) return;
+    const TemporaryFolder folder;
+    spit(folder / "part.scad", kMarked);
+    const ProgramResult result = carve_quickly(
+        folder / "part.scad", {"-o", folder / "part.3mf", "--summary", folder / "part.json", "-d", folder / "part.d"});
+    CAPTURE(result.err);
+    REQUIRE(result.exit_code == 0);
+    const Json settings = Json::parse(slurp(folder / "part.json"))["settings"];
+    REQUIRE(settings["keep"].size() == 2);
+    CHECK(settings["keep"][0]["name"] == "foot");
+    CHECK(settings["keep"][0]["shape"] == "volume");
+    CHECK(settings["loads"][0]["name"] == "top");
+    CHECK(settings["loads"][0]["case"] == "press");
+    CHECK(settings["loads"][0]["force_n"] == Json({0.0, 0.0, -25.5}));
+    CHECK(settings["fixtures"][0]["name"] == "fixture");
+
+    // The part is the body alone, solid in the foot and in the disc, and carved elsewhere.
+    const MeshFile carved = read_mesh(std::filesystem::path(folder / "part.3mf"));
+    const MeshReport report = report_mesh(carved.mesh);
+    CHECK(report.closed_manifold());
+    CHECK(report.max_mm[2] - report.min_mm[2] == Approx(60.0).margin(kSlackMm));
+    const SurfaceTree tree(carved.mesh);
+    const auto share_solid = [&](const Vec3& from, const Vec3& to) {
+        int solid = 0, all = 0;
+        for (double x = from[0]; x <= to[0]; x += 1.0)
+            for (double z = from[2]; z <= to[2]; z += 1.0, ++all)
+                solid += tree.first_hit(Vec3(x, -5, z), Vec3(x, 0.7, z)).has_value() ? 1 : 0;
+        return static_cast<double>(solid) / all;
+    };
+    CHECK(share_solid(Vec3(2, 0, 2), Vec3(58, 0, 11)) == 1.0);
+    CHECK(share_solid(Vec3(25, 0, 25), Vec3(35, 0, 35)) == 1.0);
+    CHECK(share_solid(Vec3(5, 0, 42), Vec3(55, 0, 57)) < 0.9);
+    // What the library is written to for OpenSCAD is gone by now and nothing to wait for.
+    CHECK(slurp(folder / "part.d").find("fretwork.scad") == std::string::npos);
+
+    const ProgramResult again = run_program({"carve", folder / "part.3mf", "--again", "-o", folder / "again.3mf"});
+    CAPTURE(again.err);
+    REQUIRE(again.exit_code == 0);
+    CHECK((slurp(folder / "again.3mf") == slurp(folder / "part.3mf")));
+}
+
+TEST_CASE("openscad: marks that cannot be meant are refused by name", "[cli][programs][errors]") {
+    if (openscad_is_missing()) return;
+    const TemporaryFolder folder;
+    const auto refused = [&](const std::string& marks, int code, const std::string& expected) {
+        spit(folder / "part.scad", "use <fretwork.scad>\nfretwork_body() cube(40);\n" + marks);
+        const ProgramResult result = carve_quickly(folder / "part.scad", {"-o", folder / "part.stl"});
+        CAPTURE(marks, result.err);
+        CHECK(result.exit_code == code);
+        CHECK(result.err.find(expected) != std::string::npos);
+        CHECK(folder.names() == std::vector<std::string>{"part.scad"});
+    };
+    refused("fretwork_keep(\"far\") translate([90, 0, 0]) cube(9);", 1, "'far': meets no part of the surface");
+    refused("fretwork_keep(\"none\") square(0);", 2, "fretwork_keep(\"none\")");
+    refused("fretwork_keep(\"top lid\") cube(9);", 2, "expected text of letters, digits, _ and -");
+    refused("fretwork_load(\"hand\") cube(9);", 2, "needs force_n or pressure_mpa");
+    refused("fretwork_load(\"hand\", force_n = 5) cube(9);", 2, "expected three numbers");
+    refused("fretwork_keep() cube(9); sphere(50);", 2, "outside of fretwork_body()");
+    refused("fretwork_fixture(\"a\", case = \"x\") cube(9); fretwork_fixture(\"a\", case = \"y\") cube(9);", 1,
+            "fretwork_fixture(\"a\") says");
+}
+
+TEST_CASE("openscad: without Fretwork a marked part is just the part", "[cli][programs]") {
+    if (openscad_is_missing()) return;
+    const TemporaryFolder folder;
+    spit(folder / "part.scad", kMarked);
+    const std::string library = FRETWORK_REPOSITORY "/cli/openscad";
+    const std::string render = "OPENSCADPATH='" + library + "' openscad -q -o '" + (folder / "part.off") + "' '" +
+                               (folder / "part.scad") + "'";
+    REQUIRE(std::system(render.c_str()) == 0);
+    CHECK(report_mesh(read_mesh(std::filesystem::path(folder / "part.off")).mesh).max_mm == Vec3(60, 8, 60));
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+// OpenSCAD, run on a file.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/base/run_control.h"
+
+namespace fretwork::cli {
+
+/// What of the flags is for OpenSCAD: keys of a spec hold a dot, variables of OpenSCAD do not.
+struct ScadOptions {
+    std::vector<std::string> defines;  ///< NAME=VALUE as given with -D
+    std::string parameter_file, parameter_set;
+};
+
+/// What one run has said and made.
+struct ScadRender {
+    std::string off;                ///< the mesh; empty where the file draws nothing
+    std::string error;              ///< the first; empty where all went well. Drawing nothing is one.
+    std::vector<std::string> lines;  ///< of its messages
+    std::set<std::string> files;    ///< that it has read, resolved
+
+    [[nodiscard]] bool draws_nothing() const;
+};
+
+/// Renders one file in several ways, each in a run of its own. The library fretwork.scad is there to be used.
+class OpenScad {
+  public:
+    OpenScad(std::string path, ScadOptions options);
+    ~OpenScad();
+    OpenScad(const OpenScad&) = delete;
+    OpenScad& operator=(const OpenScad&) = delete;
+
+    [[nodiscard]] const std::string& path() const { return path_; }
+
+    /// \param wanted  value of $fretwork: "body", or "KIND:NAME" of a mark, see cli/openscad/fretwork.scad
+    /// OpenSCAD reports many errors on the side and ends as if all were well; these are found.
+    /// \throws FileError  OpenSCAD cannot be run. \throws Cancelled
+    [[nodiscard]] ScadRender render(const std::string& wanted, const RunControl& run) const;
+
+  private:
+    std::string path_;
+    ScadOptions options_;
+    std::filesystem::path folder_;  ///< for results; removed at the end
+};
+
+}  // namespace fretwork::cli
