@@ -215,5 +215,45 @@ TEST_CASE("openscad: without Fretwork a marked part is just the part", "[cli][pr
     CHECK(report_mesh(read_mesh(std::filesystem::path(folder / "part.off")).mesh).max_mm == Vec3(60, 8, 60));
 }
 
+/// What one line of OpenSCAD makes of the files in the folder.
+MeshReport rendered(const TemporaryFolder& folder, const std::string& line) {
+    spit(folder / "cut.scad", line + "\n");
+    const std::string made = folder / "cut.off";
+    std::filesystem::remove(made);
+    const std::string run =
+        "openscad -o '" + made + "' '" + (folder / "cut.scad") + "' > '" + (folder / "log") + "' 2>&1";
+    const int status = std::system(run.c_str());
+    const std::string log = slurp(folder / "log");
+    CAPTURE(line, log);
+    REQUIRE(status == 0);
+    CHECK(log.find("ERROR") == std::string::npos);
+    CHECK(log.find("WARNING") == std::string::npos);
+    return report_mesh(read_mesh(std::filesystem::path(made)).mesh);
+}
+
+TEST_CASE("openscad: carved models can be imported and cut, in every format that it reads", "[cli][programs]") {
+    if (openscad_is_missing()) return;
+    const TemporaryFolder folder;
+    spit(folder / "part.scad", "cylinder(r1 = 20, r2 = 12, h = 50, $fn = 48);\n");
+    const auto* const format = GENERATE("stl", "off", "amf", "3mf");
+    const std::string name = std::string("carved.") + format;
+    CAPTURE(name);
+    const ProgramResult result = carve_quickly(
+        folder / "part.scad", {"-D", "fabrication.target_triangles=4000", "--width-mm", "30", "-o", folder / name});
+    CAPTURE(result.err);
+    REQUIRE(result.exit_code == 0);
+    const MeshReport whole = report_mesh(read_mesh(std::filesystem::path(folder / name)).mesh);
+    CHECK(whole.triangles <= 4000);
+    // Cut in two, through pattern and shell: nothing is lost and nothing is closed up.
+    const std::string model = "import(\"" + name + "\"); ", half = "translate([-30, -30, -5]) cube([60, 60, 29.7]);";
+    const MeshReport low = rendered(folder, "intersection() { " + model + half + " }");
+    const MeshReport high = rendered(folder, "difference() { " + model + half + " }");
+    CHECK(low.volume_mm3 > 0.2 * whole.volume_mm3);
+    CHECK(high.volume_mm3 > 0.2 * whole.volume_mm3);
+    CHECK(low.volume_mm3 + high.volume_mm3 == Approx(whole.volume_mm3).epsilon(1e-4));
+    CHECK(low.max_mm[2] == Approx(24.7).margin(1e-3));
+    CHECK(high.min_mm[2] == Approx(24.7).margin(1e-3));
+}
+
 }  // namespace
 }  // namespace fretwork
