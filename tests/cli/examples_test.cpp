@@ -87,6 +87,7 @@ TEST_CASE("examples: every numbered script runs and makes valid models", "[cli][
         CHECK(slurp(out / "05_orientation_up.3mf") != slurp(out / "05_orientation_free.3mf"));
         CHECK(slurp(out / "05_orientation_up.3mf") != slurp(out / "05_orientation_vector.3mf"));
     }
+    if (name == "12_marks") CHECK(slurp(out / "12_marks.gcode").find(";LAYER_CHANGE") != std::string::npos);
     if (name == "11_slice") CHECK(slurp(out / "11_slice.gcode").find(";LAYER_CHANGE") != std::string::npos);
 }
 
@@ -100,6 +101,34 @@ TEST_CASE("examples: make carves again only what changed", "[cli][examples]") {
     CHECK(fs::last_write_time(out / "10_scales.3mf") == made);
     CHECK(fs::last_write_time(out / "10_leafveins.3mf") > others);
     CHECK(slurp(out / "10_scales.d").find("10_sets.json") != std::string::npos);
+}
+
+TEST_CASE("examples: a set of OpenSCAD parts is made once, and again when its picture changes", "[cli][examples]") {
+    if (shell(TemporaryFolder(), "command -v openscad && command -v make") != 0) {
+        WARN("openscad or make is not installed: skipped");
+        return;
+    }
+    const TemporaryFolder folder;
+    fs::copy(kExamples / "openscad", fs::path(folder / "openscad"));
+    fs::copy(kExamples / "02_leaves.png", fs::path(folder / "02_leaves.png"));
+    const std::vector<std::string> sets = {"small", "tall", "square"};
+    const auto make = [&] {
+        const int code = shell(
+            folder, "make -C '" + (folder / "openscad") + "' FRETWORK='" FRETWORK_PROGRAM "' OUT=out RESOLUTION=56");
+        INFO(slurp(folder / "log"));
+        REQUIRE(code == 0);
+        std::vector<fs::file_time_type> times;
+        for (const std::string& set : sets)
+            times.push_back(fs::last_write_time(fs::path(folder / "openscad") / "out" / (set + ".3mf")));
+        return times;
+    };
+    const auto first = make();
+    for (const std::string& set : sets) check_carved(folder / ("openscad/out/" + set + ".3mf"));
+    CHECK(make() == first);
+    const fs::path picture = folder / "02_leaves.png";
+    fs::last_write_time(picture, fs::file_time_type::clock::now());
+    const auto second = make();
+    for (std::size_t i = 0; i < sets.size(); ++i) CHECK(second[i] > first[i]);
 }
 
 #ifdef FRETWORK_EXAMPLE_LIBRARY

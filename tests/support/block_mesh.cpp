@@ -65,8 +65,10 @@ class Builder {
         return found->second;
     }
 
-    /// Quad a, b, c, d, counter-clockwise seen from +axis; turned round on request.
-    void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d, bool turned) {
+    /// Corners counter-clockwise seen from +axis; turned round on request. A list, because compilers number the
+    /// vertices of arguments in orders of their own.
+    void quad(std::array<std::uint32_t, 4> corners, bool turned) {
+        auto& [a, b, c, d] = corners;
         if (turned) std::swap(b, d);
         mesh_.triangles.push_back({a, b, c});
         mesh_.triangles.push_back({a, c, d});
@@ -81,7 +83,8 @@ class Builder {
             for (int i = 0; i < lattice_.cells[at(u_axis)][at(bu)]; ++i) {
                 const double u0 = line(u_axis, bu, i), u1 = line(u_axis, bu, i + 1);
                 const double v0 = line(v_axis, bv, j), v1 = line(v_axis, bv, j + 1);
-                quad(vertex(axis, w, u0, v0), vertex(axis, w, u1, v0), vertex(axis, w, u1, v1), vertex(axis, w, u0, v1),
+                quad({vertex(axis, w, u0, v0), vertex(axis, w, u1, v0), vertex(axis, w, u1, v1),
+                      vertex(axis, w, u0, v1)},
                      side == 0);
             }
     }
@@ -124,7 +127,7 @@ class Builder {
         };
         for (int i = 0; i < 4 * k; ++i)
             for (int ring = 0; ring < rings; ++ring)
-                quad(corner(i, ring), corner(i + 1, ring), corner(i + 1, ring + 1), corner(i, ring + 1), turned);
+                quad({corner(i, ring), corner(i + 1, ring), corner(i + 1, ring + 1), corner(i, ring + 1)}, turned);
     }
 
     void add_hole_wall(const Index3& b, int axis) {
@@ -134,8 +137,9 @@ class Builder {
             const double low = line(axis, gap, step), high = line(axis, gap, step + 1);
             for (int i = 0; i < 4 * k; ++i) {
                 const Vec2 p = circle_point(b, axis, i), q = circle_point(b, axis, i + 1);
-                quad(vertex(axis, low, q[0], q[1]), vertex(axis, low, p[0], p[1]), vertex(axis, high, p[0], p[1]),
-                     vertex(axis, high, q[0], q[1]), false);
+                quad({vertex(axis, low, q[0], q[1]), vertex(axis, low, p[0], p[1]), vertex(axis, high, p[0], p[1]),
+                      vertex(axis, high, q[0], q[1])},
+                     false);
             }
         }
     }
