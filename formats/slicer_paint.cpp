@@ -10,8 +10,9 @@ std::string paint_state_text(int extruder) {
     constexpr std::string_view kDigits = "0123456789ABCDEF";
     if (extruder < 1 || extruder > 16)
         throw InvalidInput("paint: found extruder " + std::to_string(extruder) + ", expected 1 to 16");
-    if (extruder < 3) return {kDigits[static_cast<std::size_t>(4 * extruder)]};
-    return {kDigits[static_cast<std::size_t>(extruder - 3)], 'C'};
+    const auto number = static_cast<std::size_t>(extruder);
+    if (number < 3) return {kDigits[4 * number]};
+    return {kDigits[number - 3], 'C'};
 }
 
 }  // namespace fretwork

@@ -13,7 +13,8 @@ struct RegionField::Impl {
     std::vector<std::unique_ptr<regions::Shape>> inside_of, outside_of;
 };
 
-RegionField::RegionField(const TriangleMesh& mesh, std::vector<Region> regions, std::vector<Region> outside_of)
+RegionField::RegionField(const TriangleMesh& mesh, const std::vector<Region>& regions,
+                         const std::vector<Region>& outside_of)
     : impl_(std::make_unique<Impl>()) {
     check_mesh(mesh, "regions");
     for (const Region& region : regions) impl_->inside_of.push_back(regions::prepare(mesh, region));

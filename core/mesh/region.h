@@ -75,7 +75,8 @@ class RegionField {
     /// \throws InvalidSetting  a radius or width that is not positive, a zero normal, an empty box, a
     ///                         triangle past the end, a volume that is not closed, a region that meets no part of the
     ///                         surface (by name).
-    RegionField(const TriangleMesh& mesh, std::vector<Region> regions, std::vector<Region> outside_of = {});
+    RegionField(const TriangleMesh& mesh, const std::vector<Region>& regions,
+                const std::vector<Region>& outside_of = {});
     ~RegionField();
     RegionField(RegionField&&) noexcept;
     RegionField& operator=(RegionField&&) noexcept;

@@ -24,7 +24,8 @@ std::vector<Vec3f> filter_light(const std::vector<LightPixel>& pixels, int width
             float total = 0;
             for (int dy = std::max(-kReach, -y); dy <= std::min(kReach, height - 1 - y); ++dy)
                 for (int dx = std::max(-kReach, -x); dx <= std::min(kReach, width - 1 - x); ++dx) {
-                    const LightPixel& there = pixels[static_cast<std::size_t>((y + dy) * width + x + dx)];
+                    const int at = (y + dy) * width + x + dx;
+                    const LightPixel& there = pixels[static_cast<std::size_t>(at)];
                     if (there.depth <= 0) continue;
                     const float turn = std::max(0.0f, here.normal.dot(there.normal));
                     // Depth may change along a slanted surface by a few pixel widths per pixel.

@@ -329,7 +329,8 @@ Image render(const TriangleMesh& mesh, std::span<const Rgb8> triangle_colors, co
     const int columns = (settings.width + kTile - 1) / kTile;
     for (int y0 = 0; y0 < settings.height; y0 += kBand) {
         const int rows = (std::min(kBand, settings.height - y0) + kTile - 1) / kTile;
-        parallel_for(static_cast<std::size_t>(rows * columns), 1, [&](std::size_t tile) {
+        const int tiles = rows * columns;
+        parallel_for(static_cast<std::size_t>(tiles), 1, [&](std::size_t tile) {
             run.throw_if_stopped();
             const int t = static_cast<int>(tile);
             picture.draw_tile(t % columns * kTile, y0 + t / columns * kTile);

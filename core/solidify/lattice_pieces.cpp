@@ -77,8 +77,8 @@ class BlockPieces {
                 if (within(at, step) >= 0) continue;
                 const std::array<std::int32_t, 3> c = {(at & 7) + step.by[0], ((at >> 3) & 7) + step.by[1],
                                                        (at >> 6) + step.by[2]};
-                const NodeIndex block =
-                    around[static_cast<std::size_t>(((c[2] >> 3) + 1) * 9 + ((c[1] >> 3) + 1) * 3 + (c[0] >> 3) + 1)];
+                const std::int32_t side = ((c[2] >> 3) + 1) * 9 + ((c[1] >> 3) + 1) * 3 + (c[0] >> 3) + 1;
+                const NodeIndex block = around[static_cast<std::size_t>(side)];
                 if (block == WallLattice::kNone) {
                     end(own);
                     continue;

@@ -18,8 +18,9 @@ bool same_cell(const VoxelCoord& a, const VoxelCoord& b) {
 }
 
 std::size_t cell_in_block(const VoxelCoord& c) {
-    return static_cast<std::size_t>(((c[2] & kBlockMask) << (2 * kBlockBits)) + ((c[1] & kBlockMask) << kBlockBits) +
-                                    (c[0] & kBlockMask));
+    const auto cell =
+        ((c[2] & kBlockMask) << (2 * kBlockBits)) + ((c[1] & kBlockMask) << kBlockBits) + (c[0] & kBlockMask);
+    return static_cast<std::size_t>(cell);
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ float VoxelEnergy::misorientation(const LinearPart& part) const {
 }
 
 Energy VoxelEnergy::weigh(float penalty) const {
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): never below zero, and in the innermost loop
     return static_cast<Energy>(penalty * static_cast<float>(kEnergyUnit) + 0.5F) * unit_of_penalty_;
 }
 

@@ -21,6 +21,7 @@ std::size_t continued(std::int64_t i, int size, bool tileable) {
 
 std::uint8_t blend(float a, float b, float c, float d, float x, float y) {
     const float low = a + (b - a) * x, high = c + (d - c) * x;
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): never below zero, and in an inner loop
     return static_cast<std::uint8_t>(low + (high - low) * y + 0.5F);
 }
 

@@ -57,8 +57,9 @@ Vec3f off_cube(const CubePosition& p) {
 
 std::size_t cell_of(const Vec3f& d) {
     const CubePosition p = on_cube(d);
+    constexpr int kHalf = kCells / 2;
     const auto index = [](float t) {
-        return static_cast<std::size_t>(std::clamp(static_cast<int>((t + 1.0F) * (kCells / 2)), 0, kCells - 1));
+        return static_cast<std::size_t>(std::clamp(static_cast<int>((t + 1.0F) * kHalf), 0, kCells - 1));
     };
     return (p.face * kCells + index(p.a)) * kCells + index(p.b);
 }

@@ -31,6 +31,7 @@ Vec3f PlaneTransforms::up_of(LinearIndex i) const {
 std::uint32_t PlaneTransforms::rotation_towards(PlaneIndex plane, const Vec3f& up) const {
     // Turned by theta, up points to cos(theta) up - sin(theta) right.
     const float turns = angle_in_turns(up.dot(planes_->up(plane)), -up.dot(planes_->right(plane)));
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): never below zero, and in an inner loop
     const auto rotation = static_cast<std::uint32_t>(turns * static_cast<float>(rotations_) + 0.5F);
     return rotation >= rotations_ ? rotation - rotations_ : rotation;
 }

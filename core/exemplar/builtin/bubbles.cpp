@@ -18,11 +18,12 @@ struct Disc {
 /// Large discs first, then ever smaller ones wherever a random place leaves room.
 std::vector<Disc> pack(const Torus& torus, double largest, double smallest, double wall, std::uint64_t seed) {
     std::vector<Disc> discs;
-    constexpr int kSizes = 12, kTriesPerSize = 1500;
+    constexpr int kSizes = 12;
+    constexpr std::uint64_t kTriesPerSize = 1500;
+    std::uint64_t item = 0;
     for (int s = 0; s < kSizes; ++s) {
         const double size = largest * std::pow(smallest / largest, static_cast<double>(s) / (kSizes - 1));
-        for (int t = 0; t < kTriesPerSize; ++t) {
-            const auto item = static_cast<std::uint64_t>(s * kTriesPerSize + t);
+        for (std::uint64_t t = 0; t < kTriesPerSize; ++t, ++item) {
             const Vec2 at(torus.width * random_unit(seed, item, 0), torus.height * random_unit(seed, item, 1));
             double room = 1.12 * size;
             for (const Disc& d : discs) room = std::min(room, torus.shortest(at - d.center).norm() - d.radius - wall);

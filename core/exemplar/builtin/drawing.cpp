@@ -33,7 +33,8 @@ Pixel sample_pixel(double x, double y, const std::function<Sample(const Vec2&)>&
     constexpr float kShare = 1.0f / (kPerAxis * kPerAxis);
     Pixel sum{{0, 0, 0}, 0};
     for (int s = 0; s < kPerAxis * kPerAxis; ++s) {
-        const Sample one = look({x + (s % kPerAxis + 0.5) / kPerAxis, y + (s / kPerAxis + 0.5) / kPerAxis});
+        const int column = s % kPerAxis, row = s / kPerAxis;
+        const Sample one = look({x + (column + 0.5) / kPerAxis, y + (row + 0.5) / kPerAxis});
         sum.color = {sum.color.r + kShare * one.color.r, sum.color.g + kShare * one.color.g,
                      sum.color.b + kShare * one.color.b};
         // A sample stands for a square of 1 / kPerAxis px that the border may cut.

@@ -29,13 +29,14 @@ std::vector<double> blur_axis(const std::vector<double>& in, int side, bool alon
     std::vector<double> out(in.size());
     const auto at = [&](int line, int i) {
         const int w = (i % side + side) % side;
-        return static_cast<std::size_t>(along_y ? w * side + line : line * side + w);
+        const int index = along_y ? w * side + line : line * side + w;
+        return static_cast<std::size_t>(index);
     };
     for (int line = 0; line < side; ++line)
         for (int i = 0; i < side; ++i) {
             double sum = 0;
-            for (int k = -reach; k <= reach; ++k)
-                sum += kernel[static_cast<std::size_t>(k + reach)] * in[at(line, i + k)];
+            int k = i - reach;
+            for (const double weight : kernel) sum += weight * in[at(line, k++)];
             out[at(line, i)] = sum;
         }
     return out;
@@ -74,8 +75,9 @@ double TuringField::at(double x, double y) const {
     for (int j = 0; j < 4; ++j)
         for (int i = 0; i < 4; ++i) {
             const int cx = ((ix + i - 1) % side_ + side_) % side_, cy = ((iy + j - 1) % side_ + side_) % side_;
+            const int cell = cy * side_ + cx;
             sum += wx[static_cast<std::size_t>(i)] * wy[static_cast<std::size_t>(j)] *
-                   value_[static_cast<std::size_t>(cy * side_ + cx)];
+                   value_[static_cast<std::size_t>(cell)];
         }
     return sum;
 }
