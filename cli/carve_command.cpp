@@ -117,9 +117,13 @@ std::string prefix_of(const CarveModel& model, std::size_t i) {
 }
 
 void print_warnings(const CarveModel& model, const std::vector<RunReport>& reports) {
-    for (std::size_t i = 0; i < reports.size(); ++i)
+    for (std::size_t i = 0; i < reports.size(); ++i) {
         for (const std::string& warning : reports[i].warnings)
             fmt::print(stderr, "fretwork: warning: {}{}\n", prefix_of(model, i), warning);
+        if (!reports[i].print) continue;
+        for (const std::string& fault : reports[i].print->faults)
+            fmt::print(stderr, "fretwork: warning: {}print: {}\n", prefix_of(model, i), fault);
+    }
 }
 
 void print_checked(const std::string& prefix, const RunReport& report) {
@@ -142,7 +146,8 @@ void print_done(const std::string& output, const std::string& prefix, const RunR
 bool below_standard(const RunReport& report) {
     const MeshReport& mesh = report.mesh.report;
     return report.structure.max_pa > report.structure.allowable_pa || !mesh.closed_manifold() ||
-           mesh.self_intersections > 0 || report.pattern.components_after != report.shell.components;
+           mesh.self_intersections > 0 || report.pattern.components_after != report.shell.components ||
+           (report.print && !report.print->faults.empty());
 }
 
 int check(const CarveOptions& options, Interrupt& interrupt) {

@@ -30,6 +30,7 @@ void add_convert(CLI::App& program, Action& chosen);
 void add_info(CLI::App& program, Action& chosen);
 void add_pattern(CLI::App& program, Action& chosen);
 void add_spec(CLI::App& program, Action& chosen);
+void add_verify(CLI::App& program, Action& chosen);
 void add_render(CLI::App& program, Action& chosen);
 
 /// Runs the action and turns what it throws into one line on stderr and an exit code.

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
     add_pattern(program, chosen);
     add_spec(program, chosen);
     add_render(program, chosen);
+    add_verify(program, chosen);
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/color_channel.h"
+#include "formats/printability_facts.h"
 
 namespace fretwork {
 namespace {
@@ -98,12 +99,18 @@ Json structure_json(const StructureRecord& s) {
 
 Json printability_json(const RunReport& r) {
     const MeshReport& mesh = r.mesh.report;
-    return {{"min_feature_mm", number(r.mesh.min_feature_mm)},
-            {"min_hole_mm", number(r.mesh.min_hole_mm)},
-            {"one_piece", r.pattern.components_after == r.shell.components},
-            {"valid_mesh", mesh.closed_manifold() && mesh.non_manifold_vertices == 0 && mesh.self_intersections == 0},
-            {"islands_removed", r.mesh.islands_removed},
-            {"islands_volume_mm3", number(r.mesh.islands_volume_mm3)}};
+    Json json = {
+        {"min_feature_mm", number(r.mesh.min_feature_mm)},
+        {"min_hole_mm", number(r.mesh.min_hole_mm)},
+        {"one_piece", r.pattern.components_after == r.shell.components},
+        {"valid_mesh", mesh.closed_manifold() && mesh.non_manifold_vertices == 0 && mesh.self_intersections == 0},
+        {"islands_removed", r.mesh.islands_removed},
+        {"islands_volume_mm3", number(r.mesh.islands_volume_mm3)}};
+    if (!r.print) return json;
+    Facts facts;
+    add_printability_facts(r.print->report, r.print->faults, "", facts);
+    json.update(Json::parse(facts_json(facts)));
+    return json;
 }
 
 Json seconds_json(const RunReport& r) {

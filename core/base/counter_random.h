@@ -13,6 +13,7 @@ enum class RandomStream : std::uint32_t {
     kSamples,
     kPattern,
     kTest,
+    kPrintability,
     kRender,
     kMeshDistance,
 };

@@ -18,6 +18,7 @@
 #include "core/pipeline/settings_schema.h"
 #include "core/pipeline/stage_plan.h"
 #include "core/pipeline/structure_loop.h"
+#include "core/printability/print_faults.h"
 #include "core/pyramid/voxel_pyramid.h"
 #include "core/shell/voxelize.h"
 #include "core/solidify/pattern_field.h"
@@ -29,8 +30,8 @@ namespace {
 // The flow, with the seconds that each stage takes on a bunny of 256 voxels. The loop of Algorithm 1
 // is one entry, because nobody knows how often it will turn.
 std::vector<PlannedStage> planned_stages() {
-    return {{"repair", 0.3},    {"voxelize", 0.3}, {"pyramid", 0.3},  {"synthesize", 0.6},
-            {"reinforce", 3.0}, {"enlarge", 2.0},  {"solidify", 7.5}, {"verify", 0.3}};
+    return {{"repair", 0.3},  {"voxelize", 0.3}, {"pyramid", 0.3}, {"synthesize", 0.6},  {"reinforce", 3.0},
+            {"enlarge", 2.0}, {"solidify", 7.5}, {"verify", 0.3},  {"printability", 1.0}};
 }
 
 std::vector<SettingAssignment> resolved_document(const Settings& settings, const ResolvedSettings& resolved) {
@@ -123,9 +124,20 @@ void note_output(const CarvedMesh& carved, const MeshReport& mesh, RunReport& re
                         report.shell.components));
 }
 
-// A draft is for the eye and does without; `check_carve` counts in any case.
-CountSelfIntersections counts_self_intersections(const Settings& settings) {
-    return settings.synthesis.preset == Preset::kDraft ? CountSelfIntersections::kNo : CountSelfIntersections::kYes;
+/// A draft is for the eye and does without what takes long to find out.
+bool is_draft(const Settings& settings) {
+    return settings.synthesis.preset == Preset::kDraft;
+}
+
+PrintRecord print_record(const TriangleMesh& carved, const FabricationOptions& fabrication,
+                         const ResolvedSettings& resolved, const RunControl& run) {
+    PrintRecord record;
+    record.report = printability(carved,
+                                 {fabrication.layer_height_mm, fabrication.overhang_deg,
+                                  resolved.enlarge.min_feature_mm, resolved.enlarge.min_hole_mm},
+                                 run);
+    record.faults = print_faults(record.report, fabrication.nozzle_mm);
+    return record;
 }
 
 /// Colours of the file's triangles for those of the repaired mesh.
@@ -159,7 +171,8 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     RunReport& report = result.report = report_of_request(input, settings);
 
     PreparedSurface surface = plan.run("repair", [&](const RunControl& r) {
-        return prepare_surface(input.mesh, settings.input, counts_self_intersections(settings), r);
+        return prepare_surface(input.mesh, settings.input,
+                               is_draft(settings) ? CountSelfIntersections::kNo : CountSelfIntersections::kYes, r);
     });
     report.input.scale = surface.scale;
     report.input.mesh = surface.found;
@@ -214,6 +227,9 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
         return found;
     });
     note_output(result.carved, carved, report);
+    plan.run("printability", [&](const RunControl& r) {
+        if (!is_draft(settings)) report.print = print_record(result.carved.mesh, settings.fabrication, resolved, r);
+    });
     result.carved.triangle_colors =
         output_colors(std::move(result.carved.triangle_colors), settings.output.colour, input.exemplar);
     result.voxel_colors = output_colors(std::move(result.voxel_colors), settings.output.colour, input.exemplar);

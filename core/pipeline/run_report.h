@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "core/mesh/mesh_report.h"
 #include "core/pipeline/setting_value.h"
 #include "core/pipeline/settings.h"
+#include "core/printability/printability.h"
 #include "core/reinforce/structural_optimizer.h"
 
 namespace fretwork {
@@ -76,6 +78,12 @@ struct StageSeconds {
     double seconds = 0.0;  ///< wall clock
 };
 
+/// By layers; what a draft does without.
+struct PrintRecord {
+    PrintabilityReport report;
+    std::vector<std::string> faults;  ///< see print_faults.h
+};
+
 struct RunReport {
     std::string version;
     InputRecord input;
@@ -87,6 +95,7 @@ struct RunReport {
     std::vector<ReinforceRecord> iterations;
     StructureRecord structure;
     OutputMeshRecord mesh;
+    std::optional<PrintRecord> print;
     PaintRecord paint;
     std::vector<StageSeconds> seconds;  ///< in the order of the run
     double seconds_total = 0.0;

@@ -116,6 +116,8 @@ struct FabricationOptions {
     std::optional<double> min_hole_mm;
     double simplify_voxels = 0.06;
     int target_triangles = 0;
+    double layer_height_mm = 0.2;  ///< of the layers that printability is judged by
+    double overhang_deg = 45.0;    ///< lean from the vertical that prints without support
 };
 
 struct OutputOptions {

@@ -347,6 +347,10 @@ void add_fabrication(std::vector<SettingInfo>& t) {
                     "How far simplifying may move the surface; 0 keeps every triangle."));
     t.push_back(row("fabrication.target_triangles", FIELD(fabrication.target_triangles), "1", between(0, 1e8),
                     "Most triangles wanted; 0 = as the tolerance allows."));
+    t.push_back(row("fabrication.layer_height_mm", FIELD(fabrication.layer_height_mm), "mm", between(0.01, 10),
+                    "Height of the layers that the report on printability looks at."));
+    t.push_back(row("fabrication.overhang_deg", FIELD(fabrication.overhang_deg), "degrees", between(0, 89),
+                    "Lean from the vertical that prints without support."));
 }
 
 void add_output(std::vector<SettingInfo>& t) {

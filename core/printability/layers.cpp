@@ -87,9 +87,9 @@ class Cutter {
     static std::size_t unused_from(const std::vector<Step>& steps, const std::vector<std::uint8_t>& used,
                                    std::uint32_t edge, std::size_t first) {
         if (steps[first].from_edge == edge) return first;
-        const auto range = std::ranges::equal_range(steps, edge, {}, &Step::from_edge);
-        for (auto it = range.begin(); it != range.end(); ++it) {
-            const auto i = static_cast<std::size_t>(it - steps.begin());
+        const auto found = std::ranges::lower_bound(steps, edge, {}, &Step::from_edge);
+        for (auto i = static_cast<std::size_t>(found - steps.begin()); i < steps.size(); ++i) {
+            if (steps[i].from_edge != edge) break;
             if (!used[i]) return i;
         }
         return steps.size();

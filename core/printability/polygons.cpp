@@ -99,7 +99,7 @@ Polygons cleaned(const Polygons& area, double mm) {
     return result;
 }
 
-Polygon box_around(const Polygons& area, double margin_mm) {
+Polygon box_around(const Polygons& area) {
     constexpr cInt kFar = std::numeric_limits<cInt>::max();
     IntPoint low(kFar, kFar), high(-kFar, -kFar);
     for (const Polygon& border : area)
@@ -107,9 +107,6 @@ Polygon box_around(const Polygons& area, double margin_mm) {
             low = {std::min(low.X, p.X), std::min(low.Y, p.Y)};
             high = {std::max(high.X, p.X), std::max(high.Y, p.Y)};
         }
-    const auto margin = static_cast<cInt>(std::llround(margin_mm * kUnitsPerMm));
-    low = {low.X - margin, low.Y - margin};
-    high = {high.X + margin, high.Y + margin};
     return {low, {high.X, low.Y}, high, {low.X, high.Y}};
 }
 

@@ -39,10 +39,10 @@ Polygons offset(const Polygons& area, double mm);
 std::vector<Part> parts_of(const Polygons& area);
 bool contains(const Part& part, const ClipperLib::IntPoint& p);
 
-/// The same borders, each moved by `mm`, and all points at most `mm` off: fewer of them.
+/// The same borders with fewer points: what strays by less than `mm` is left out.
 Polygons cleaned(const Polygons& area, double mm);
 
-/// Bounds of an area, grown by `margin_mm`.
-Polygon box_around(const Polygons& area, double margin_mm);
+/// Corners of the box around an area, from the lowest on.
+Polygon box_around(const Polygons& area);
 
 }  // namespace fretwork

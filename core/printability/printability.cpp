@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -12,7 +14,7 @@
 #include "core/mesh/components.h"
 #include "core/printability/layers.h"
 #include "core/printability/supports.h"
-#include "core/printability/widths.h"
+#include "core/printability/wall_widths.h"
 
 namespace fretwork {
 namespace {
@@ -33,41 +35,51 @@ void check(const PrintabilitySettings& settings) {
     need(settings.min_hole_mm, kLeastMm, kMostMm, "min_hole_mm");
 }
 
-struct LayerFindings {
-    LayerSupports supports;
-    std::optional<Neck> thin, narrow;
-};
-
-LayerFindings look_at(const std::vector<Layer>& layers, std::size_t i, const PrintabilitySettings& settings) {
-    LayerFindings found;
-    const double reach = settings.layer_height_mm * std::tan(settings.overhang_deg * std::numbers::pi / 180.0);
-    if (i > 0) found.supports = look_below(layers[i], layers[i - 1], reach);
-    found.thin = narrowest(layers[i].outline, settings.min_feature_mm);
-    found.narrow = narrowest_gap(layers[i].outline, settings.min_hole_mm);
-    return found;
-}
-
 void keep_longer(const PrintPlace& place, PrintPlace& longest) {
     if (place.size_mm > longest.size_mm) longest = place;
 }
 
-void keep_less(const std::optional<Neck>& neck, double z, std::size_t& layers, std::optional<PrintPlace>& least) {
-    if (!neck) return;
-    ++layers;
-    if (!least || neck->width_mm < least->size_mm)
-        least = PrintPlace{Vec3(neck->at_mm[0], neck->at_mm[1], z), neck->width_mm};
-}
-
-void add(const Layer& layer, const LayerFindings& found, PrintabilityReport& report) {
-    const LayerSupports& supports = found.supports;
+void add(const LayerSupports& supports, PrintabilityReport& report) {
     report.islands += supports.islands.size();
     report.islands_per_layer.push_back(supports.islands.size());
     report.island_places.insert(report.island_places.end(), supports.islands.begin(), supports.islands.end());
     report.overhang_area_mm2 += supports.overhang_mm2;
     keep_longer(supports.longest_bridge, report.longest_bridge);
     keep_longer(supports.longest_cantilever, report.longest_cantilever);
-    keep_less(found.thin, layer.middle_mm, report.thin_layers, report.least_solid);
-    keep_less(found.narrow, layer.middle_mm, report.narrow_layers, report.least_hole);
+}
+
+void look_below_all(const std::vector<Layer>& layers, const PrintabilitySettings& settings, const RunControl& run,
+                    PrintabilityReport& report) {
+    const double reach = settings.layer_height_mm * std::tan(settings.overhang_deg * std::numbers::pi / 180.0);
+    std::vector<LayerSupports> found(layers.size());
+    parallel_for(layers.size() - 1, 1, [&](std::size_t i) {
+        run.throw_if_stopped();
+        found[i + 1] = look_below(layers[i + 1], layers[i], reach);
+    });
+    for (const LayerSupports& supports : found) add(supports, report);
+    std::ranges::stable_sort(report.island_places, std::ranges::greater{}, &PrintPlace::size_mm);
+    if (report.island_places.size() > kMostPlaces) report.island_places.resize(kMostPlaces);
+}
+
+/// \return the share of the points with less than the limit, and the width that one of 200 falls short of
+std::pair<double, std::optional<PrintPlace>> least_of(std::vector<WallWidth> widths, double limit_mm) {
+    constexpr std::size_t kOneOf = 200;
+    std::ranges::stable_sort(widths, {}, &WallWidth::width_mm);
+    const auto below = std::ranges::lower_bound(widths, limit_mm, {}, &WallWidth::width_mm) - widths.begin();
+    const WallWidth& least = widths[widths.size() / kOneOf];
+    std::optional<PrintPlace> place;
+    if (least.width_mm < limit_mm) place = PrintPlace{least.at_mm, least.width_mm};
+    return {static_cast<double>(below) / static_cast<double>(widths.size()), place};
+}
+
+void measure_widths(const TriangleMesh& mesh, const PrintabilitySettings& settings, const RunControl& run,
+                    PrintabilityReport& report) {
+    const SurfaceTree tree(mesh, run);
+    const auto least = [&](WallSide side, double limit) {
+        return least_of(wall_widths(mesh, tree, side, limit, run), limit);
+    };
+    std::tie(report.thin_share, report.least_solid) = least(WallSide::kMaterial, settings.min_feature_mm);
+    std::tie(report.narrow_share, report.least_hole) = least(WallSide::kGap, settings.min_hole_mm);
 }
 
 /// Pieces of surface by the sign of what they enclose.
@@ -100,19 +112,13 @@ PrintabilityReport printability(const TriangleMesh& mesh, const PrintabilitySett
     count_pieces(mesh, run, report);
     const std::vector<Layer> layers = cut_layers(mesh, settings.layer_height_mm, run);
     run.checkpoint(kStage, 0.2);
-    std::vector<LayerFindings> found(layers.size());
-    parallel_for(layers.size(), 1, [&](std::size_t i) {
-        run.throw_if_stopped();
-        found[i] = look_at(layers, i, settings);
-    });
     report.layers = layers.size();
     report.first_layer_contact_mm2 = area_mm2(layers.front().outline);
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        if (layers[i].outline.empty()) ++report.empty_layers;
-        add(layers[i], found[i], report);
-    }
-    std::ranges::stable_sort(report.island_places, std::ranges::greater{}, &PrintPlace::size_mm);
-    if (report.island_places.size() > kMostPlaces) report.island_places.resize(kMostPlaces);
+    report.empty_layers = static_cast<std::size_t>(
+        std::ranges::count_if(layers, [](const Layer& layer) { return layer.outline.empty(); }));
+    look_below_all(layers, settings, run, report);
+    run.checkpoint(kStage, 0.7);
+    measure_widths(mesh, settings, run, report);
     run.checkpoint(kStage, 1.0);
     return report;
 }

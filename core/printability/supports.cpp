@@ -32,7 +32,7 @@ void add_edges(const Polygon& border, std::vector<Edge>& edges) {
 
 /// Points on the borders of a part, at most `spacing` apart, and a grid of them inside.
 std::vector<Vec2> points_of(const Part& part) {
-    const Polygon box = box_around(part.borders, 0.0);
+    const Polygon box = box_around(part.borders);
     const Vec2 low = mm_of(box[0]), high = mm_of(box[2]);
     const double spacing = std::max((high - low).maxCoeff() / kSamplesAcross, kLeastSpacingMm);
     std::vector<Vec2> points;
@@ -95,7 +95,7 @@ PrintPlace place(const Vec2& at, double z, double size) {
 }
 
 Vec2 middle_of(const Part& part) {
-    const Polygon box = box_around(part.borders, 0.0);
+    const Polygon box = box_around(part.borders);
     return 0.5 * (mm_of(box[0]) + mm_of(box[2]));
 }
 

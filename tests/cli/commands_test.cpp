@@ -292,5 +292,33 @@ TEST_CASE("cli: render draws sheets of views", "[cli]") {
     CHECK(run_program({"render", folder / "vase.off", "-o", folder / "v.png", "--size", "8"}).exit_code == 1);
 }
 
+TEST_CASE("cli: verify says how a model prints, and --strict what is against it", "[cli]") {
+    const TemporaryFolder folder;
+    const auto write = [&](const char* name, const TriangleMesh& mesh) {
+        write_mesh(std::filesystem::path(folder / name), {mesh});
+    };
+    write("block.stl", testing::make_box(Vec3::Zero(), Vec3(10, 10, 4), {1, 1, 1}));
+    const ProgramResult sound = run_program({"verify", folder / "block.stl", "--json", "--strict"});
+    CAPTURE(sound.err);
+    REQUIRE(sound.exit_code == 0);
+    const Json facts = Json::parse(sound.out);
+    CHECK(facts["sound"] == true);
+    CHECK(facts["printability"]["layers"] == 20);
+    CHECK(facts["printability"]["first_layer_contact_mm2"].get<double>() == Approx(100.0));
+
+    write("two.stl", testing::make_boxes_sharing_edge());
+    const ProgramResult loose = run_program({"verify", folder / "two.stl", "--strict", "--layer-height", "0.1"});
+    CHECK(loose.exit_code == 4);
+    CHECK(loose.err.find("fault: 1 loose part") != std::string::npos);
+    CHECK(loose.out.find("sound = false") != std::string::npos);
+    CHECK(run_program({"verify", folder / "two.stl"}).exit_code == 0);
+
+    write("blade.stl", testing::make_box(Vec3::Zero(), Vec3(10, 0.3, 4), {1, 1, 1}));
+    CHECK(run_program({"verify", folder / "blade.stl", "--strict"}).err.find("a strand is 0.30 mm wide") !=
+          std::string::npos);
+    CHECK(run_program({"verify", folder / "blade.stl", "--strict", "--nozzle", "0.25"}).exit_code == 0);
+    CHECK(run_program({"verify", folder / "block.stl", "--layer-height", "0"}).exit_code == 1);
+}
+
 }  // namespace
 }  // namespace fretwork

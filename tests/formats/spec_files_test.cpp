@@ -114,6 +114,14 @@ RunReport some_report() {
     report.iterations = {{}, {}};
     report.seconds = {{"synthesize", 1.5}, {"reinforce", 2.5}};
     report.seconds_total = 4.0;
+    PrintabilityReport print;
+    print.layers = 3;
+    print.islands_per_layer = {0, 2, 0};
+    print.islands = 2;
+    print.island_places = {{Vec3(1, 2, 3), 0.5}};
+    print.longest_bridge = {Vec3(4, 5, 6), 7.5};
+    print.least_solid = PrintPlace{Vec3(7, 8, 9), 0.25};
+    report.print = PrintRecord{print, {"a strand is 0.25 mm wide"}};
     report.warnings = {"one \"quoted\" \xFF byte"};
     return report;
 }
@@ -129,6 +137,13 @@ TEST_CASE("report: fits its published schema", "[formats][report]") {
     CHECK(report["seconds"]["initial_synthesis"] == 1.5);
     CHECK(report["seconds"]["total"] == 4.0);
     CHECK(report["iterations"].size() == 2);
+    const Json& print = report["printability"];
+    CHECK(print["island_layers"] == Json::array({{{"layer", 1}, {"islands", 2}}}));
+    CHECK(print["longest_bridge_at_mm"] == Json({4.0, 5.0, 6.0}));
+    CHECK(print["least_solid_mm"] == 0.25);
+    CHECK_FALSE(print.contains("least_hole_mm"));
+    CHECK_FALSE(print.contains("longest_cantilever_at_mm"));
+    CHECK(print["faults"].size() == 1);
 }
 
 TEST_CASE("report: of several objects fits the schema too", "[formats][report]") {

@@ -100,7 +100,7 @@ TEST_CASE("printability: overhang depends on the slope and on what is allowed", 
     CHECK(printability(cone, settings).overhang_area_mm2 == Approx(share * all).epsilon(0.02));
 }
 
-TEST_CASE("printability: necks and slots are measured, tips and corners are not", "[printability]") {
+TEST_CASE("printability: strands and gaps are as wide as the way across them", "[printability]") {
     // Two blocks with a strand of 0.5 mm between them, and a slot of 0.3 mm behind the second.
     const auto with_strand = [](double strand, double slot) {
         return blocks({{Vec3(0, 0, 0), Vec3(10, 10, 2)},
@@ -110,20 +110,40 @@ TEST_CASE("printability: necks and slots are measured, tips and corners are not"
     };
     const PrintabilityReport thin = printability(with_strand(0.5, 0.3), {});
     REQUIRE(thin.least_solid);
-    CHECK(thin.least_solid->size_mm == Approx(0.5).margin(0.03));
-    CHECK(thin.least_solid->at_mm[0] == Approx(15.0).margin(1.0));
-    CHECK(thin.thin_layers == 10);
+    CHECK(thin.least_solid->size_mm == Approx(0.5).margin(0.01));
+    CHECK(thin.least_solid->at_mm[0] == Approx(15.0).margin(6.0));
     REQUIRE(thin.least_hole);
-    CHECK(thin.least_hole->size_mm == Approx(0.3).margin(0.03));
-    CHECK(thin.narrow_layers == 10);
+    CHECK(thin.least_hole->size_mm == Approx(0.3).margin(0.01));
+    CHECK(thin.least_hole->at_mm[0] == Approx(30.15).margin(0.16));
+    // Both sides of the slot, of all the surface there is.
+    const double area = report_mesh(with_strand(0.5, 0.3)).area_mm2;
+    CHECK(thin.narrow_share == Approx(2 * 10 * 2 / area).epsilon(0.1));
     const PrintabilityReport wide = printability(with_strand(0.9, 0.9), {});
     CHECK_FALSE(wide.least_solid);
     CHECK_FALSE(wide.least_hole);
-    // A wedge ends in a sharp edge, which any tip does.
-    TriangleMesh wedge = make_box(Vec3::Zero(), Vec3(20, 10, 2), {1, 1, 1});
-    for (Vec3& p : wedge.positions_mm)
-        if (p[0] > 1) p[1] = 5.0 + 0.001 * (p[1] - 5.0);
-    CHECK_FALSE(printability(wedge, {}).least_solid);
+    CHECK(wide.thin_share == 0.0);
+    CHECK(wide.narrow_share == 0.0);
+}
+
+TEST_CASE("printability: round and square rods have their own width, whatever way they lie", "[printability]") {
+    TriangleMesh rod = make_cylinder(0.35, 20.0, 48, 30);
+    const auto tilt = GENERATE(0.0, 30.0, 90.0);
+    const double c = std::cos(tilt * std::numbers::pi / 180), s = std::sin(tilt * std::numbers::pi / 180);
+    TriangleMesh bar = make_box(Vec3::Zero(), Vec3(0.7, 0.7, 20), {1, 1, 12});
+    for (TriangleMesh* mesh : {&rod, &bar}) {
+        for (Vec3& p : mesh->positions_mm) p = Vec3(c * p[0] + s * p[2], p[1], -s * p[0] + c * p[2]);
+        const PrintabilityReport report = printability(*mesh, {});
+        REQUIRE(report.least_solid);
+        CHECK(report.least_solid->size_mm == Approx(0.7).margin(0.01));
+        CHECK(report.thin_share > 0.9 * 0.7);
+    }
+}
+
+TEST_CASE("printability: edges and corners are not thin", "[printability]") {
+    CHECK_FALSE(printability(make_box(Vec3::Zero(), Vec3(5, 5, 5), {3, 3, 3}), {}).least_solid);
+    CHECK_FALSE(printability(make_sphere(4.0, 48, 96), {}).least_solid);
+    // A right-angled groove is no gap.
+    CHECK_FALSE(printability(blocks({{Vec3(0, 0, 0), Vec3(9, 9, 3)}, {Vec3(0, 0, 0), Vec3(3, 9, 9)}}), {}).least_hole);
 }
 
 TEST_CASE("printability: a hollow without a way out is found", "[printability]") {

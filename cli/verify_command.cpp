@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/command.h"
+#include "cli/files.h"
+#include "cli/run_options.h"
+#include "core/base/parallel.h"
+#include "core/mesh/mesh_report.h"
+#include "core/mesh/repair.h"
+#include "core/pipeline/settings.h"
+#include "core/printability/print_faults.h"
+#include "core/printability/printability.h"
+#include "formats/facts_text.h"
+#include "formats/printability_facts.h"
+
+namespace fretwork::cli {
+namespace {
+
+struct VerifyOptions {
+    ModelSource model;
+    FabricationOptions fabrication;
+    std::optional<double> min_feature_mm, min_hole_mm;
+    bool json = false, strict = false;
+    RunOptions run;
+};
+
+PrintabilitySettings settings_of(const VerifyOptions& options) {
+    const double two_lines = 2.0 * options.fabrication.nozzle_mm;
+    return {options.fabrication.layer_height_mm, options.fabrication.overhang_deg,
+            options.min_feature_mm.value_or(two_lines), options.min_hole_mm.value_or(two_lines)};
+}
+
+/// Faults of the surface itself, in words.
+std::vector<std::string> mesh_faults(const MeshReport& mesh) {
+    std::vector<std::string> faults;
+    const auto add = [&](std::size_t found, const char* what) {
+        if (found > 0) faults.push_back(fmt::format("{} {}", found, what));
+    };
+    add(mesh.border_edges, "edges have a triangle on one side only");
+    add(mesh.non_manifold_edges, "edges have more than two triangles");
+    add(mesh.flipped_edges, "edges have triangles that run against each other");
+    add(mesh.self_intersections, "pairs of triangles intersect");
+    return faults;
+}
+
+int verify_command(const VerifyOptions& options, Interrupt& interrupt) {
+    const ThreadLimit threads(options.run.threads);
+    const RunControl run = control_of(options.run, interrupt);
+    const MeshFile file = read_model(options.model, run.slice(0.0, 0.2));
+    // Vertices of formats that know none are joined; nothing else changes in a sound mesh.
+    const TriangleMesh mesh = repair_mesh(file.mesh, {}, run.slice(0.2, 0.3)).mesh;
+    const MeshReport report = report_mesh(mesh, CountSelfIntersections::kYes, run.slice(0.3, 0.5));
+    const PrintabilityReport print = printability(mesh, settings_of(options), run.slice(0.5, 1.0));
+    std::vector<std::string> faults = mesh_faults(report);
+    for (std::string& fault : print_faults(print, options.fabrication.nozzle_mm)) faults.push_back(std::move(fault));
+
+    Facts facts;
+    facts.add("file", options.model.path);
+    facts.add("sound", faults.empty());
+    add_mesh_facts(report, facts);
+    add_printability_facts(print, faults, "printability.", facts);
+    fmt::print("{}", options.json ? facts_json(facts) : facts_lines(facts));
+    if (!options.run.quiet) {
+        for (const std::string& fault : faults) fmt::print(stderr, "fretwork: fault: {}\n", fault);
+        for (const std::string& caution : print_cautions(print)) fmt::print(stderr, "fretwork: note: {}\n", caution);
+    }
+    return options.strict && !faults.empty() ? kBelowStandard : kDone;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& program, Action& chosen) {
+    auto options = std::make_shared<VerifyOptions>();
+    CLI::App* command =
+        program.add_subcommand("verify", "Say how well a model prints, layer by layer, and what is against it");
+    command->add_option("model", options->model.path, fmt::format("The model: {}; - reads standard input", kReadable))
+        ->required()
+        ->type_name("FILE");
+    command->add_flag("--json", options->json, "As JSON instead of key = value lines");
+    const char* printer = "Printer";
+    const auto number = [&](const char* flag, double& value, const char* help) {
+        command->add_option(flag, value, fmt::format("{} ({:g})", help, value))->type_name("NUMBER")->group(printer);
+    };
+    number("--layer-height", options->fabrication.layer_height_mm, "Height of a layer, mm");
+    number("--nozzle", options->fabrication.nozzle_mm, "Width of a printed line, mm");
+    number("--overhang", options->fabrication.overhang_deg, "Lean from the vertical that needs no support, degrees");
+    command->add_option("--min-feature", options->min_feature_mm, "Narrower solid is listed, mm (two lines)")
+        ->type_name("NUMBER")
+        ->group(printer);
+    command->add_option("--min-hole", options->min_hole_mm, "Narrower gaps are listed, mm (two lines)")
+        ->type_name("NUMBER")
+        ->group(printer);
+    command->add_option("--input-format", options->model.format, "Format of the model when the name does not tell")
+        ->type_name("FORMAT");
+    command->add_option("--input-unit", options->model.unit, "Unit of a model whose file names none (millimeter)")
+        ->type_name("UNIT");
+    command->add_flag("--strict", options->strict, "Exit with 4 where there is a fault");
+    add_run_flags(*command, options->run);
+    command->footer("Example:\n  fretwork verify carved.3mf --nozzle 0.4 --layer-height 0.2");
+    command->callback([options, &chosen] {
+        chosen = [options](Interrupt& interrupt) { return verify_command(*options, interrupt); };
+    });
+}
+
+}  // namespace fretwork::cli
