@@ -12,6 +12,7 @@
 #include "cli/pattern_options.h"
 #include "cli/run_options.h"
 #include "cli/scad_model.h"
+#include "cli/slicing.h"
 #include "core/base/error.h"
 #include "formats/color_channel.h"
 #include "formats/spec_toml_reader.h"
@@ -34,6 +35,7 @@ struct CarveOptions {
     std::string summary, preview, dependencies;
     bool check = false;
     bool strict = false;
+    std::string slice;  ///< profile
 };
 
 /// The flags of this command that stand for keys of a spec.
@@ -147,7 +149,7 @@ bool below_standard(const RunReport& report) {
     const MeshReport& mesh = report.mesh.report;
     return report.structure.max_pa > report.structure.allowable_pa || !mesh.closed_manifold() ||
            mesh.self_intersections > 0 || report.pattern.components_after != report.shell.components ||
-           (report.print && !report.print->faults.empty());
+           (report.print && !report.print->faults.empty()) || (report.slicing && !report.slicing->faults.empty());
 }
 
 int check(const CarveOptions& options, Interrupt& interrupt) {
@@ -165,29 +167,64 @@ int check(const CarveOptions& options, Interrupt& interrupt) {
     return kDone;
 }
 
-void put_results(const CarveOptions& options, const CarvedModel& result, const std::vector<RunReport>& reports,
-                 const PictureFiles& pictures, const RunControl& run, Interrupt& interrupt) {
+void put_carved(const CarveOptions& options, const CarvedModel& result, const PictureFiles& pictures,
+                const RunControl& run, Interrupt& interrupt) {
     const MeshFormat format = output_format(options.output, options.export_format);
     const MeshBytes carved = carved_bytes(result, options.output, format, run.slice(0.0, 0.6));
     if (!options.preview.empty()) put(options.preview, preview_png(result, run.slice(0.6, 0.9)), interrupt);
-    if (!options.summary.empty())
-        put(options.summary, summary_json(result.model, reports, ReportTimes::kInclude), interrupt);
     if (!options.dependencies.empty()) {
         std::vector<std::string> inputs = files_read(options.pattern, pictures);
         inputs.insert(inputs.begin(), result.model.read_beside.begin(), result.model.read_beside.end());
         if (options.model.path != kStream) inputs.insert(inputs.begin(), options.model.path);
+        if (!options.slice.empty()) inputs.push_back(options.slice);
         put(options.dependencies, make_rule(options.output, inputs), interrupt);
     }
-    // The result last: whoever sees it sees everything else too.
     if (!carved.materials_path.empty()) put(carved.materials_path, carved.materials, interrupt);
     put(options.output, carved.bytes, interrupt);
     run.checkpoint("write", 1.0);
+}
+
+/// Fails before the work is done rather than after it.
+void check_slicing(const CarveOptions& options) {
+    if (options.slice.empty()) return;
+    if (options.output == kStream)
+        throw InvalidSetting("--slice needs a file: give -o FILE instead of standard output");
+    const MeshFormat format = output_format(options.output, options.export_format);
+    if (format != MeshFormat::kThreemf && format != MeshFormat::kStl && format != MeshFormat::kObj &&
+        format != MeshFormat::kAmf)
+        throw InvalidSetting(
+            fmt::format("--slice: slicers read 3MF, STL, OBJ and AMF, and the result is {}", options.output));
+    check_target(sliced_path(options.output, options.slice), {options.model.path, options.slice});
+}
+
+/// The carved file is in place by now and stays, whatever the slicer says.
+void slice_result(const CarveOptions& options, RunReport& report, const RunControl& run, Interrupt& interrupt) {
+    if (options.slice.empty()) return;
+    run.checkpoint("slice", 0.0);
+    Slicing slicing = slice(options.output, options.slice, run);
+    put(slicing.record.output, slicing.bytes, interrupt);
+    report.slicing = std::move(slicing.record);
+    run.checkpoint("slice", 1.0);
+}
+
+void print_slicing(const RunReport& report) {
+    if (!report.slicing) return;
+    const SliceRecord& s = *report.slicing;
+    const auto told = [](const std::optional<double>& value, const char* unit) {
+        return value ? fmt::format(", {:.4g} {}", *value, unit) : std::string();
+    };
+    fmt::print(stderr, "fretwork: {}: {} layers{}{}\n", s.output, s.layers,
+               told(s.seconds ? std::optional(*s.seconds / 3600.0) : std::nullopt, "h"),
+               s.filament_g ? told(s.filament_g, "g") : told(s.material_ml, "ml"));
+    for (const auto* list : {&s.warnings, &s.faults})
+        for (const std::string& text : *list) fmt::print(stderr, "fretwork: warning: {}: {}\n", s.output, text);
 }
 
 int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     if (options.check) return check(options, interrupt);
     if (options.output.empty()) throw InvalidSetting("no output: give -o FILE, or --check to carve nothing");
     output_format(options.output, options.export_format);
+    check_slicing(options);
     for (const std::string& target : {options.output, options.summary, options.preview, options.dependencies})
         check_target(target, {options.model.path, options.pattern.exemplar, options.pattern.mask, options.source});
     const RunLimits limits = limits_of(options.run);
@@ -205,13 +242,18 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     const std::vector<RunFile> pictures = opened.request.pictures.files(settings.output.source);
     std::vector<RunReport> reports;
     for (const CarvedTarget& target : carved) reports.push_back(target.report);
-    put_results(options, {opened.model, carved, settings, pictures}, reports, opened.request.pictures,
-                run.slice(0.95, 1.0), interrupt);
+    const double written = options.slice.empty() ? 1.0 : 0.96;
+    put_carved(options, {opened.model, carved, settings, pictures}, opened.request.pictures, run.slice(0.95, written),
+               interrupt);
+    slice_result(options, reports.front(), run.slice(written, 1.0), interrupt);
+    if (!options.summary.empty())
+        put(options.summary, summary_json(opened.model, reports, ReportTimes::kInclude), interrupt);
     if (!options.run.quiet) {
         print_warnings(opened.model, reports);
         for (std::size_t i = 0; i < reports.size(); ++i)
             print_done(options.output, prefix_of(opened.model, i), reports[i]);
         print_paint(reports.front().paint);
+        print_slicing(reports.front());
     }
     return options.strict && std::ranges::any_of(reports, below_standard) ? kBelowStandard : kDone;
 }
@@ -268,6 +310,11 @@ void add_carve(CLI::App& program, Action& chosen) {
         ->type_name("SLICER")
         ->group(files);
     command->add_option("--extruders", options->extruders, "Extruders to paint with (4)")->type_name("N")->group(files);
+    command
+        ->add_option("--slice", options->slice,
+                     "Go on to G-code beside OUT, with PrusaSlicer and this .ini, or CuraEngine and this .def.json")
+        ->type_name("PROFILE")
+        ->group(files);
     command->add_option("-d", options->dependencies, "Write a rule for make that names every file read")
         ->type_name("FILE")
         ->group(files);

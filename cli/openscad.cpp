@@ -1,10 +1,10 @@
 #include "cli/openscad.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -12,7 +12,6 @@
 
 #include "cli/child_process.h"
 #include "cli/fretwork_scad.h"
-#include "core/base/error.h"
 #include "formats/read_file.h"
 
 namespace fretwork::cli {
@@ -22,12 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "openscad";
 constexpr const char* kEmpty = "top level object is empty";
-
-fs::path make_folder() {
-    std::string name = (fs::temp_directory_path() / "fretwork-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw FileError(name + ": no folder could be made");
-    return fs::canonical(name);
-}
 
 /// Where OpenSCAD looks for libraries: what the user has set, then ours.
 std::string library_path(const fs::path& ours) {
@@ -39,8 +32,8 @@ std::string library_path(const fs::path& ours) {
 void hear(const ProcessResult& result, ScadRender& render) {
     std::istringstream lines(result.err + result.out);
     for (std::string line; std::getline(lines, line);) {
-        const bool fault = line.starts_with("ERROR:") || line.find("CGAL error") != line.npos ||
-                           line.find(kEmpty) != line.npos;
+        const bool fault =
+            line.starts_with("ERROR:") || line.find("CGAL error") != line.npos || line.find(kEmpty) != line.npos;
         if (fault && render.error.empty()) render.error = line;
         render.lines.push_back(std::move(line));
     }
@@ -74,14 +67,8 @@ bool ScadRender::draws_nothing() const {
     return error.find(kEmpty) != error.npos;
 }
 
-OpenScad::OpenScad(std::string path, ScadOptions options)
-    : path_(std::move(path)), options_(std::move(options)), folder_(make_folder()) {
+OpenScad::OpenScad(std::string path, ScadOptions options) : path_(std::move(path)), options_(std::move(options)) {
     std::ofstream(folder_ / "fretwork.scad") << kFretworkScad;
-}
-
-OpenScad::~OpenScad() {
-    std::error_code none;
-    fs::remove_all(folder_, none);
 }
 
 ScadRender OpenScad::render(const std::string& wanted, const RunControl& run) const {
@@ -96,13 +83,13 @@ ScadRender OpenScad::render(const std::string& wanted, const RunControl& run) co
         line.insert(line.end(), {"-p", options_.parameter_file, "-P", options_.parameter_set});
     line.push_back(path_);
     ScadRender render;
-    hear(run_process(line, run, {library_path(folder_)}), render);
+    hear(run_process(line, run, {library_path(folder_.path())}), render);
     if (fs::exists(result, none)) render.off = read_file(result);
     if (render.off.empty() && render.error.empty()) render.error = "made no model";
     if (!fs::exists(rule, none)) return render;
     for (const std::string& file : files_in_rule(read_file(rule))) {
         const fs::path resolved = fs::weakly_canonical(file, none);
-        if (resolved.parent_path() != folder_) render.files.insert(resolved.string());
+        if (resolved.parent_path() != folder_.path()) render.files.insert(resolved.string());
     }
     return render;
 }

@@ -1,11 +1,11 @@
 // OpenSCAD, run on a file.
 #pragma once
 
-#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "cli/scratch_folder.h"
 #include "core/base/run_control.h"
 
 namespace fretwork::cli {
@@ -18,10 +18,10 @@ struct ScadOptions {
 
 /// What one run has said and made.
 struct ScadRender {
-    std::string off;                ///< the mesh; empty where the file draws nothing
-    std::string error;              ///< the first; empty where all went well. Drawing nothing is one.
+    std::string off;                 ///< the mesh; empty where the file draws nothing
+    std::string error;               ///< the first; empty where all went well. Drawing nothing is one.
     std::vector<std::string> lines;  ///< of its messages
-    std::set<std::string> files;    ///< that it has read, resolved
+    std::set<std::string> files;     ///< that it has read, resolved
 
     [[nodiscard]] bool draws_nothing() const;
 };
@@ -30,9 +30,6 @@ struct ScadRender {
 class OpenScad {
   public:
     OpenScad(std::string path, ScadOptions options);
-    ~OpenScad();
-    OpenScad(const OpenScad&) = delete;
-    OpenScad& operator=(const OpenScad&) = delete;
 
     [[nodiscard]] const std::string& path() const { return path_; }
 
@@ -44,7 +41,7 @@ class OpenScad {
   private:
     std::string path_;
     ScadOptions options_;
-    std::filesystem::path folder_;  ///< for results; removed at the end
+    ScratchFolder folder_;  ///< for results
 };
 
 }  // namespace fretwork::cli

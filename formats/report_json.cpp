@@ -130,6 +130,26 @@ Json paint_json(const PaintRecord& paint) {
     return {{"slicer", paint.format == PaintFormat::kPrusa ? "prusa" : "bambu"}, {"extruders", colors}};
 }
 
+Json or_null(const std::optional<double>& value) {
+    return value ? number(*value) : Json(nullptr);
+}
+
+Json slicing_json(const SliceRecord& s) {
+    return {{"slicer", s.slicer},
+            {"profile", s.profile},
+            {"output", s.output},
+            {"layers", s.layers},
+            {"height_mm", number(s.height_mm)},
+            {"seconds", or_null(s.seconds)},
+            {"filament_mm", or_null(s.filament_mm)},
+            {"filament_g", or_null(s.filament_g)},
+            {"material_ml", or_null(s.material_ml)},
+            {"parts_compared", s.parts_compared},
+            {"lost_parts", s.lost_parts},
+            {"warnings", s.warnings},
+            {"faults", s.faults}};
+}
+
 Json whole_json(const RunReport& r, ReportTimes times) {
     Json json;
     json["version"] = r.version;
@@ -156,6 +176,7 @@ Json whole_json(const RunReport& r, ReportTimes times) {
         json["peak_memory_bytes"] = r.peak_memory_bytes;
     }
     if (r.paint.format != PaintFormat::kNone) json["paint"] = paint_json(r.paint);
+    if (r.slicing) json["slicing"] = slicing_json(*r.slicing);
     json["warnings"] = r.warnings;
     return json;
 }

@@ -13,9 +13,9 @@ enum class RandomStream : std::uint32_t {
     kSamples,
     kPattern,
     kTest,
-    kPrintability,
     kRender,
     kMeshDistance,
+    kPrintability,
 };
 
 /// The same five numbers give the same 64 random bits on every machine and in any order of calls,

@@ -29,11 +29,6 @@ namespace {
 
 // The flow, with the seconds that each stage takes on a bunny of 256 voxels. The loop of Algorithm 1
 // is one entry, because nobody knows how often it will turn.
-std::vector<PlannedStage> planned_stages() {
-    return {{"repair", 0.3},  {"voxelize", 0.3}, {"pyramid", 0.3}, {"synthesize", 0.6},  {"reinforce", 3.0},
-            {"enlarge", 2.0}, {"solidify", 7.5}, {"verify", 0.3},  {"printability", 1.0}};
-}
-
 std::vector<SettingAssignment> resolved_document(const Settings& settings, const ResolvedSettings& resolved) {
     Settings full = settings;
     full.shell.thickness_mm = resolved.solidify.thickness_mm;
@@ -129,6 +124,13 @@ bool is_draft(const Settings& settings) {
     return settings.synthesis.preset == Preset::kDraft;
 }
 
+std::vector<PlannedStage> planned_stages(const Settings& settings) {
+    std::vector<PlannedStage> stages = {{"repair", 0.3},    {"voxelize", 0.3}, {"pyramid", 0.3},  {"synthesize", 0.6},
+                                        {"reinforce", 3.0}, {"enlarge", 2.0},  {"solidify", 7.5}, {"verify", 0.3}};
+    if (!is_draft(settings)) stages.push_back({"printability", 1.0});
+    return stages;
+}
+
 PrintRecord print_record(const TriangleMesh& carved, const FabricationOptions& fabrication,
                          const ResolvedSettings& resolved, const RunControl& run) {
     PrintRecord record;
@@ -166,7 +168,7 @@ std::size_t component_count(const SurfaceVoxels& shell) {
 
 CarveResult carve(const CarveInput& input, const Settings& settings, const RunLimits& limits, const RunControl& run) {
     const ThreadLimit threads(limits.threads);
-    StagePlan plan(planned_stages(), run);
+    StagePlan plan(planned_stages(settings), run);
     CarveResult result;
     RunReport& report = result.report = report_of_request(input, settings);
 
@@ -227,9 +229,10 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
         return found;
     });
     note_output(result.carved, carved, report);
-    plan.run("printability", [&](const RunControl& r) {
-        if (!is_draft(settings)) report.print = print_record(result.carved.mesh, settings.fabrication, resolved, r);
-    });
+    if (!is_draft(settings))
+        report.print = plan.run("printability", [&](const RunControl& r) {
+            return print_record(result.carved.mesh, settings.fabrication, resolved, r);
+        });
     result.carved.triangle_colors =
         output_colors(std::move(result.carved.triangle_colors), settings.output.colour, input.exemplar);
     result.voxel_colors = output_colors(std::move(result.voxel_colors), settings.output.colour, input.exemplar);

@@ -84,6 +84,17 @@ struct PrintRecord {
     std::vector<std::string> faults;  ///< see print_faults.h
 };
 
+/// What a slicer made of the result. Only with `--slice`, and never in the carved file itself.
+struct SliceRecord {
+    std::string slicer, profile, output;
+    std::size_t layers = 0;
+    double height_mm = 0.0;                                               ///< of the last layer
+    std::optional<double> seconds, filament_mm, filament_g, material_ml;  ///< as the slicer estimates
+    bool parts_compared = false;  ///< whether every part of every layer was looked for
+    std::size_t lost_parts = 0;   ///< that no line is printed in
+    std::vector<std::string> warnings, faults;
+};
+
 struct RunReport {
     std::string version;
     InputRecord input;
@@ -97,6 +108,7 @@ struct RunReport {
     OutputMeshRecord mesh;
     std::optional<PrintRecord> print;
     PaintRecord paint;
+    std::optional<SliceRecord> slicing;
     std::vector<StageSeconds> seconds;  ///< in the order of the run
     double seconds_total = 0.0;
     double seconds_resynthesis = 0.0;  ///< part of "reinforce"

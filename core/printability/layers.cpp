@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -99,62 +100,57 @@ class Cutter {
     std::vector<std::uint32_t> edge_of_;
 };
 
-struct Heights {
-    double bottom, step;
-    std::size_t count;
-
-    [[nodiscard]] double middle(std::size_t i) const { return bottom + (static_cast<double>(i) + 0.5) * step; }
-    /// First layer whose middle lies at or above `z`.
-    [[nodiscard]] std::size_t first_at(double z) const {
-        const double i = std::ceil((z - bottom) / step - 0.5);
-        return i <= 0.0 ? 0 : std::min(count, static_cast<std::size_t>(i));
-    }
-};
-
-Heights heights_of(const TriangleMesh& mesh, double step) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Triangle& t : mesh.triangles)
-        for (const std::uint32_t v : t) {
-            low = std::min(low, mesh.positions_mm[v][2]);
-            high = std::max(high, mesh.positions_mm[v][2]);
-        }
-    const double count = std::max(1.0, std::ceil((high - low) / step - 0.5));
-    if (count > static_cast<double>(kMostLayers))
-        throw InvalidInput("printability: the model is " + std::to_string(high - low) + " mm high, more than " +
-                           std::to_string(kMostLayers) + " layers of " + std::to_string(step) + " mm");
-    return {low, step, static_cast<std::size_t>(count)};
+std::pair<double, double> extent_of(const TriangleMesh& mesh, const Triangle& t) {
+    const double a = mesh.positions_mm[t[0]][2], b = mesh.positions_mm[t[1]][2], c = mesh.positions_mm[t[2]][2];
+    return {std::min({a, b, c}), std::max({a, b, c})};
 }
 
-/// Triangles that may reach across the middle of each layer, ascending.
-std::vector<std::vector<std::uint32_t>> triangles_by_layer(const TriangleMesh& mesh, const Heights& heights) {
-    std::vector<std::vector<std::uint32_t>> lists(heights.count);
+/// Triangles that may reach across each height, ascending.
+std::vector<std::vector<std::uint32_t>> triangles_across(const TriangleMesh& mesh,
+                                                         const std::vector<double>& heights_mm) {
+    std::vector<std::vector<std::uint32_t>> lists(heights_mm.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (const std::uint32_t v : mesh.triangles[t]) {
-            low = std::min(low, mesh.positions_mm[v][2]);
-            high = std::max(high, mesh.positions_mm[v][2]);
-        }
-        const std::size_t first = heights.first_at(low);
-        // One more than needed, against rounding; a triangle that does not cross is passed over.
-        const std::size_t last = std::min(heights.count, heights.first_at(high) + 1);
-        for (std::size_t i = first > 0 ? first - 1 : 0; i < last; ++i) lists[i].push_back(t);
+        const auto [low, high] = extent_of(mesh, mesh.triangles[t]);
+        const auto first = std::ranges::lower_bound(heights_mm, low) - heights_mm.begin();
+        for (auto i = static_cast<std::size_t>(first); i < heights_mm.size() && heights_mm[i] <= high; ++i)
+            lists[i].push_back(t);
     }
     return lists;
 }
 
+/// Middles of layers of one height between the lowest and the highest point.
+std::vector<double> middles(const TriangleMesh& mesh, double step) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Triangle& t : mesh.triangles) {
+        const auto [least, most] = extent_of(mesh, t);
+        low = std::min(low, least);
+        high = std::max(high, most);
+    }
+    const double count = std::max(1.0, std::ceil((high - low) / step - 0.5));
+    if (count > static_cast<double>(kMostLayers))
+        throw InvalidInput("printability: the model is " + std::to_string(high - low) + " mm high, more than " +
+                           std::to_string(kMostLayers) + " layers of " + std::to_string(step) + " mm");
+    std::vector<double> heights;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+        heights.push_back(low + (static_cast<double>(i) + 0.5) * step);
+    return heights;
+}
+
 }  // namespace
 
-std::vector<Layer> cut_layers(const TriangleMesh& mesh, double layer_height_mm, const RunControl& run) {
-    const Heights heights = heights_of(mesh, layer_height_mm);
-    const auto lists = triangles_by_layer(mesh, heights);
+std::vector<Layer> cut_at(const TriangleMesh& mesh, const std::vector<double>& heights_mm, const RunControl& run) {
+    const auto lists = triangles_across(mesh, heights_mm);
     const Cutter cutter(mesh, run);
-    std::vector<Layer> layers(heights.count);
-    parallel_chunks(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<Layer> layers(heights_mm.size());
+    parallel_for(layers.size(), 1, [&](std::size_t i) {
         run.throw_if_stopped();
-        for (std::size_t i = begin; i < end; ++i)
-            layers[i] = {heights.middle(i), cutter.cut(heights.middle(i), lists[i])};
+        layers[i] = {heights_mm[i], cutter.cut(heights_mm[i], lists[i])};
     });
     return layers;
+}
+
+std::vector<Layer> cut_layers(const TriangleMesh& mesh, double layer_height_mm, const RunControl& run) {
+    return cut_at(mesh, middles(mesh, layer_height_mm), run);
 }
 
 }  // namespace fretwork

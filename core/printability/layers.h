@@ -14,8 +14,11 @@ struct Layer {
     Polygons outline;        ///< what is solid; outer borders counter-clockwise, holes clockwise
 };
 
+/// What is solid at each of the heights, which ascend. Overlapping pieces are one. Deterministic.
+std::vector<Layer> cut_at(const TriangleMesh& mesh, const std::vector<double>& heights_mm, const RunControl& run);
+
 /// Layer i reaches from `bottom + i h` to `bottom + (i + 1) h`, where `bottom` is the lowest vertex, and is cut at its
-/// middle. Overlapping pieces are one. Deterministic.
+/// middle.
 std::vector<Layer> cut_layers(const TriangleMesh& mesh, double layer_height_mm, const RunControl& run);
 
 }  // namespace fretwork

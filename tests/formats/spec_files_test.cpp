@@ -122,6 +122,7 @@ RunReport some_report() {
     print.longest_bridge = {Vec3(4, 5, 6), 7.5};
     print.least_solid = PrintPlace{Vec3(7, 8, 9), 0.25};
     report.print = PrintRecord{print, {"a strand is 0.25 mm wide"}};
+    report.slicing = SliceRecord{"prusa-slicer", "fdm.ini", "out.gcode", 12, 2.4, 60.0, {}, 3.5, {}, true, 0, {}, {}};
     report.warnings = {"one \"quoted\" \xFF byte"};
     return report;
 }

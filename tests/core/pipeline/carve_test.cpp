@@ -78,6 +78,19 @@ TEST_CASE("carve: the record agrees with the result", "[pipeline]") {
         if (setting.key == "shell.thickness_mm") CHECK(std::get<double>(setting.value) == r.shell.thickness_mm);
 }
 
+TEST_CASE("carve: printability is judged, but not of a draft", "[pipeline]") {
+    Settings full = quick();
+    CHECK_FALSE(carve(input_for(small_vase(), "cells"), full).report.print);
+    full.synthesis.preset = Preset::kDefault;
+    full.fabrication.layer_height_mm = 0.5;
+    const CarveResult result = carve(input_for(small_vase(), "cells"), full);
+    REQUIRE(result.report.print);
+    const PrintabilityReport& print = result.report.print->report;
+    CHECK(print.layers == 100);
+    CHECK(print.material_mm3 == Approx(result.report.mesh.report.volume_mm3));
+    CHECK(print.loose_parts == 0);
+}
+
 TEST_CASE("carve: threads do not show in the result", "[pipeline][determinism]") {
     const CarveInput input = input_for(small_vase(), "waves");
     const CarveResult one = carve(input, quick(), {1, 0});

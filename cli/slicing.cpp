@@ -1,0 +1,170 @@
+#include "cli/slicing.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "cli/child_process.h"
+#include "cli/files.h"
+#include "cli/scratch_folder.h"
+#include "core/base/error.h"
+#include "formats/gcode_reader.h"
+#include "formats/mesh_file.h"
+#include "formats/read_file.h"
+#include "formats/sla_reader.h"
+
+namespace fretwork::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kUsualLineMm = 0.45;
+constexpr double kSlackMm = 0.01;
+
+enum class Slicer { kPrusaFilament, kPrusaResin, kCura };
+
+Slicer slicer_of(const std::string& profile) {
+    if (profile.ends_with(".def.json")) return Slicer::kCura;
+    if (!profile.ends_with(".ini"))
+        throw InvalidSetting(
+            fmt::format("--slice {}: expected a profile of PrusaSlicer (.ini) or a definition of CuraEngine "
+                        "(.def.json)",
+                        profile));
+    std::istringstream lines(read_file(fs::path(profile)));
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with("printer_technology") && line.find("SLA") != line.npos) return Slicer::kPrusaResin;
+    return Slicer::kPrusaFilament;
+}
+
+const char* program_of(Slicer slicer) {
+    return slicer == Slicer::kCura ? "CuraEngine" : "prusa-slicer";
+}
+
+std::vector<std::string> prusa_line(Slicer slicer, const std::string& profile, const std::string& out,
+                                    const std::string& model) {
+    return {program_of(slicer),
+            slicer == Slicer::kPrusaResin ? "--export-sla" : "--export-gcode",
+            "--load",
+            profile,
+            "-o",
+            out,
+            model};
+}
+
+/// CuraEngine reads STL only, and finds what a definition builds on beside it.
+std::vector<std::string> cura_line(const std::string& profile, const std::string& out, const std::string& stl) {
+    return {program_of(Slicer::kCura), "slice", "-v", "-j", profile, "-s", "center_object=true", "-o", out, "-l", stl};
+}
+
+std::vector<std::string> cura_environment(const std::string& profile) {
+    const fs::path definitions = fs::absolute(profile).parent_path();
+    return {fmt::format("CURA_ENGINE_SEARCH_PATH={}:{}", definitions.string(),
+                        (definitions.parent_path() / "extruders").string())};
+}
+
+std::string last_line(const std::string& text) {
+    std::istringstream lines(text);
+    std::string last;
+    for (std::string line; std::getline(lines, line);)
+        if (line.find_first_not_of(" \t\r") != line.npos) last = line;
+    return last;
+}
+
+/// What the slicer says and does not fail for.
+std::vector<std::string> warnings_in(const std::string& text) {
+    std::vector<std::string> warnings;
+    std::istringstream lines(text);
+    constexpr std::string_view kMark = "print warning: ";
+    for (std::string line; std::getline(lines, line);)
+        if (const auto at = line.find(kMark); at != line.npos) warnings.push_back(line.substr(at + kMark.size()));
+    return warnings;
+}
+
+void judge_bed(const SlicedPrint& print, std::vector<std::string>& faults) {
+    if (!print.room_mm) return;
+    const auto& [low, high] = *print.room_mm;
+    const Vec3 slack = Vec3::Constant(kSlackMm);
+    if (((print.min_mm + slack).array() >= low.array()).all() && ((print.max_mm - slack).array() <= high.array()).all())
+        return;
+    faults.push_back(
+        fmt::format("it is printed from ({:.1f}, {:.1f}, {:.1f}) to ({:.1f}, {:.1f}, {:.1f}) mm, and the "
+                    "printer reaches from ({:g}, {:g}) to ({:g}, {:g}) and {:g} mm high",
+                    print.min_mm[0], print.min_mm[1], print.min_mm[2], print.max_mm[0], print.max_mm[1],
+                    print.max_mm[2], low[0], low[1], high[0], high[1], high[2]));
+}
+
+void judge_gaps(const SlicedPrint& print, std::vector<std::string>& faults) {
+    if (print.empty_between_mm.empty()) return;
+    const Vec2& first = print.empty_between_mm.front();
+    faults.push_back(fmt::format("nothing is printed between {:g} and {:g} mm{}", first[0], first[1],
+                                 print.empty_between_mm.size() > 1
+                                     ? fmt::format(", nor at {} more heights", print.empty_between_mm.size() - 1)
+                                     : ""));
+}
+
+void judge_parts(const SlicedPrint& print, const TriangleMesh& mesh, const RunControl& run, SliceRecord& record) {
+    const double line = print.line_mm.value_or(kUsualLineMm);
+    const LostParts lost = find_lost_parts(mesh, print.layers, line, run);
+    record.parts_compared = lost.compared;
+    record.lost_parts = lost.places.size();
+    if (lost.places.empty()) return;
+    const Vec3& at = lost.places.front().at_mm;
+    record.faults.push_back(
+        fmt::format("no line is printed in {} parts of layers, first at ({:.1f}, {:.1f}, {:.1f}) mm",
+                    lost.places.size(), at[0], at[1], at[2]));
+}
+
+SliceRecord record_of(const SlicedPrint& print) {
+    SliceRecord record;
+    record.layers = print.layers.size();
+    record.height_mm = print.layers.empty() ? 0.0 : print.layers.back().top_mm;
+    record.seconds = print.seconds;
+    record.filament_mm = print.filament_mm;
+    record.filament_g = print.filament_g;
+    record.material_ml = print.material_ml;
+    judge_gaps(print, record.faults);
+    judge_bed(print, record.faults);
+    return record;
+}
+
+}  // namespace
+
+std::string sliced_path(const std::string& model, const std::string& profile) {
+    const Slicer slicer = slicer_of(profile);
+    return fs::path(model).replace_extension(slicer == Slicer::kPrusaResin ? ".sl1" : ".gcode").string();
+}
+
+Slicing slice(const std::string& model, const std::string& profile, const RunControl& run) {
+    const Slicer slicer = slicer_of(profile);
+    const ScratchFolder folder;
+    const std::string out = (folder / (slicer == Slicer::kPrusaResin ? "out.sl1" : "out.gcode")).string();
+    ProcessResult said;
+    const TriangleMesh mesh = read_mesh(fs::path(model)).mesh;
+    if (slicer == Slicer::kCura) {
+        const std::string stl = (folder / "model.stl").string();
+        write_mesh(fs::path(stl), {mesh});
+        said = run_process(cura_line(profile, out, stl), run, cura_environment(profile));
+    } else {
+        said = run_process(prusa_line(slicer, profile, out, model), run);
+    }
+    std::error_code none;
+    if (said.exit_code != 0 || !fs::exists(out, none))
+        throw InvalidInput(fmt::format("{}: {} made nothing of it with {}: exit code {}{}{}", model, program_of(slicer),
+                                       profile, said.exit_code, said.err.empty() && said.out.empty() ? "" : ", ",
+                                       last_line(said.out + said.err)));
+    Slicing result;
+    result.bytes = read_file(fs::path(out));
+    const std::string source = sliced_path(model, profile);
+    const SlicedPrint print =
+        slicer == Slicer::kPrusaResin ? read_sla_archive(result.bytes, source) : read_gcode(result.bytes, source);
+    result.record = record_of(print);
+    result.record.slicer = program_of(slicer);
+    result.record.profile = profile;
+    result.record.output = source;
+    result.record.warnings = warnings_in(said.out + said.err);
+    if (slicer != Slicer::kPrusaResin) judge_parts(print, mesh, run, result.record);
+    return result;
+}
+
+}  // namespace fretwork::cli
