@@ -110,9 +110,9 @@ void judge_parts(const SlicedPrint& print, const TriangleMesh& mesh, const RunCo
     record.lost_parts = lost.places.size();
     if (lost.places.empty()) return;
     const Vec3& at = lost.places.front().at_mm;
-    record.faults.push_back(
-        fmt::format("no line is printed in {} parts of layers, first at ({:.1f}, {:.1f}, {:.1f}) mm",
-                    lost.places.size(), at[0], at[1], at[2]));
+    record.faults.push_back(fmt::format("no line is printed in {} {} layers, first at ({:.1f}, {:.1f}, {:.1f}) mm",
+                                        lost.places.size(), lost.places.size() == 1 ? "part of the" : "parts of", at[0],
+                                        at[1], at[2]));
 }
 
 SliceRecord record_of(const SlicedPrint& print) {

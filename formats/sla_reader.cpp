@@ -39,7 +39,8 @@ std::optional<double> number(const Config& config, std::string_view key) {
     return end == found->second.c_str() ? std::nullopt : std::optional(value);
 }
 
-bool is_dark(const Image& picture) {
+bool is_dark(const ZipReader& archive, const std::string& name, std::string_view source) {
+    const Image picture = read_image(archive.read(name, kMostPictureBytes), std::string(source) + ": " + name);
     return std::ranges::all_of(picture.pixels, [](const Rgba8& p) { return p[0] == 0 && p[1] == 0 && p[2] == 0; });
 }
 
@@ -47,13 +48,13 @@ bool is_dark(const Image& picture) {
 
 SlicedPrint read_sla_archive(std::string_view bytes, std::string_view source) {
     const ZipReader archive(bytes, source);
-    std::vector<std::string> pictures;
+    std::vector<ZipReader::Entry> pictures;
     Config config;
     for (const ZipReader::Entry& entry : archive.entries()) {
         if (entry.name == "config.ini") config = config_of(archive.read(entry.name, kMostConfigBytes));
-        if (entry.name.ends_with(".png") && !entry.name.starts_with("thumbnail")) pictures.push_back(entry.name);
+        if (entry.name.ends_with(".png") && !entry.name.starts_with("thumbnail")) pictures.push_back(entry);
     }
-    std::ranges::sort(pictures);
+    std::ranges::sort(pictures, {}, &ZipReader::Entry::name);
     const auto height = number(config, "layerHeight");
     if (pictures.empty() || !height || *height <= 0.0)
         throw InvalidInput(std::string(source) +
@@ -61,11 +62,11 @@ SlicedPrint read_sla_archive(std::string_view bytes, std::string_view source) {
     SlicedPrint print;
     print.seconds = number(config, "printTime");
     print.material_ml = number(config, "usedMaterial");
+    // Nothing packs smaller than darkness: whatever is much larger than the smallest shows something.
+    const std::uint64_t smallest = std::ranges::min(pictures, {}, &ZipReader::Entry::size).size;
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         const double top = static_cast<double>(i + 1) * *height;
-        const Image picture =
-            read_image(archive.read(pictures[i], kMostPictureBytes), std::string(source) + ": " + pictures[i]);
-        if (!is_dark(picture))
+        if (pictures[i].size > smallest + smallest / 8 || !is_dark(archive, pictures[i].name, source))
             print.layers.push_back({top, *height, {}});
         else if (!print.empty_between_mm.empty() && print.empty_between_mm.back()[1] > top - 1.5 * *height)
             print.empty_between_mm.back()[1] = top;

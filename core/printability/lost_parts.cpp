@@ -10,6 +10,8 @@
 namespace fretwork {
 namespace {
 
+constexpr double kLeastLines = 1.5;  // slicers may leave out a single line here and there
+
 struct Box2 {
     Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
     Vec2 high = -low;
@@ -43,11 +45,11 @@ bool any_within(const Polygons& area, const std::vector<Vec2>& points, const Vec
     });
 }
 
-/// Parts wide enough for a line that no point comes near to.
+/// Parts wide enough for lines that no point comes near to.
 std::vector<PrintPlace> lost_in(const Layer& layer, const PrintedLayer& printed, const Vec2& shift, double line_mm) {
     std::vector<PrintPlace> lost;
     for (const Part& part : parts_of(layer.outline)) {
-        if (offset(part.borders, -0.5 * line_mm).empty()) continue;
+        if (offset(part.borders, -0.5 * kLeastLines * line_mm).empty()) continue;
         if (any_within(offset(part.borders, 0.5 * line_mm), printed.points_mm, shift)) continue;
         const Vec2 middle = box_of(part.borders).middle();
         lost.push_back({Vec3(middle[0], middle[1], layer.middle_mm), std::sqrt(part.area_mm2())});

@@ -22,9 +22,8 @@ struct LostParts {
         places;  ///< one for each part lost, in the mesh's coordinates; size is the root of the area
 };
 
-/// The mesh is shifted so that its box lies where the lines do. Parts narrower than a line are not asked for.
-/// \param layers  upwards from the bed
-/// \param line_mm  width of a printed line, above 0
+/// The mesh is shifted so that its box lies where the lines do. Parts narrower than one and a half lines are not asked
+/// for. \param layers  upwards from the bed \param line_mm  width of a printed line, above 0
 LostParts find_lost_parts(const TriangleMesh& mesh, const std::vector<PrintedLayer>& layers, double line_mm,
                           const RunControl& run = {});
 

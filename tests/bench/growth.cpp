@@ -27,8 +27,8 @@ using namespace fretwork::bench;
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr std::array kStages = {"repair",    "voxelize", "pyramid",  "synthesize",
-                                "reinforce", "enlarge",  "solidify", "verify"};
+constexpr std::array kStages = {"repair",  "voxelize", "pyramid", "synthesize",  "reinforce",
+                                "enlarge", "solidify", "verify",  "printability"};
 /// Fixed costs are left out of the fits.
 constexpr int kLeastFittedResolution = 128;
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "cli/run_program.h"
 #include "formats/mesh_file.h"
@@ -80,6 +81,92 @@ TEST_CASE("a carved bunny slices in PrusaSlicer: manifold, one part, no repair",
     }
     const TemporaryFolder folder;
     carve_and_slice(folder, bunny, "cells", "50");
+}
+
+const std::string kProfiles = FRETWORK_REPOSITORY "/examples/profiles/";
+
+ProgramResult carve_with(const TemporaryFolder& folder, const std::string& profile,
+                         std::vector<std::string> more = {}) {
+    write_mesh(std::filesystem::path(folder / "vase.stl"), {make_vase(30.0)});
+    std::vector<std::string> line = {"carve",     folder / "vase.stl", "--pattern", "bubbles", "--resolution",
+                                     "64",        "--slice",           profile,     "-o",      folder / "vase.3mf",
+                                     "--summary", folder / "vase.json"};
+    line.insert(line.end(), more.begin(), more.end());
+    return run_program(line);
+}
+
+TEST_CASE("slice: goes on to G-code, with what it takes and what is wrong with it in the report", "[cli][programs]") {
+    if (!slicer_is_there()) return;
+    const TemporaryFolder folder;
+    const ProgramResult run = carve_with(folder, kProfiles + "fdm-0.4.ini", {"-d", folder / "vase.d"});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    CHECK(slurp(folder / "vase.gcode").find(";LAYER_CHANGE") != std::string::npos);
+    CHECK(slurp(folder / "vase.d").find("fdm-0.4.ini") != std::string::npos);
+    const auto report = nlohmann::json::parse(slurp(folder / "vase.json"));
+    const auto& slicing = report["slicing"];
+    CHECK(slicing["slicer"] == "prusa-slicer");
+    CHECK(slicing["parts_compared"] == true);
+    CHECK(slicing["lost_parts"] == 0);
+    CHECK(slicing["faults"].empty());
+    CHECK(slicing["seconds"].get<double>() > 600.0);
+    CHECK(slicing["filament_g"].get<double>() > 1.0);
+    // Both count the same layers of the same body; supports come on top.
+    CHECK(slicing["layers"] == report["printability"]["layers"]);
+    CHECK(slicing["material_ml"].get<double>() * 1000 > 0.6 * report["printability"]["material_mm3"].get<double>());
+}
+
+TEST_CASE("slice: what the printer cannot reach or the slicer will not do is told", "[cli][programs][errors]") {
+    if (!slicer_is_there()) return;
+    const TemporaryFolder folder;
+    const auto with = [&](const std::string& name, const std::string& from, const std::string& to) {
+        std::string text = slurp(kProfiles + "fdm-0.4.ini");
+        text.replace(text.find(from), from.size(), to);
+        spit(folder / name, text);
+        return carve_with(folder, folder / name, {"--strict", "--preset", "draft"});
+    };
+    const ProgramResult low = with("low.ini", "max_print_height = 250", "max_print_height = 20");
+    CAPTURE(low.err);
+    CHECK(low.exit_code != 0);
+    CHECK(low.err.find("20") != std::string::npos);
+    const ProgramResult tiny = with("tiny.ini", "0x0,220x0,220x220,0x220", "0x0,5x0,5x5,0x5");
+    CAPTURE(tiny.err);
+    CHECK(tiny.exit_code == 2);
+    CHECK(tiny.err.find("tiny.ini") != std::string::npos);
+    // Whatever the slicer says, the carved model is there.
+    CHECK(std::filesystem::exists(folder / "vase.3mf"));
+
+    CHECK(carve_with(folder, folder / "no.ini").exit_code == 2);
+    CHECK(carve_with(folder, folder / "profile.txt").exit_code == 1);
+    CHECK(run_program({"carve", folder / "vase.stl", "--pattern", "cells", "-o", "-", "--export-format", "stl",
+                       "--slice", kProfiles + "fdm-0.4.ini"})
+              .exit_code == 1);
+}
+
+TEST_CASE("slice: resin and powder become pictures of their layers", "[cli][programs]") {
+    if (!slicer_is_there()) return;
+    const TemporaryFolder folder;
+    const ProgramResult run = carve_with(folder, kProfiles + "powder.ini", {"--preset", "draft"});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    const auto slicing = nlohmann::json::parse(slurp(folder / "vase.json"))["slicing"];
+    CHECK(slicing["layers"].get<int>() == Approx(300).margin(20));
+    CHECK(slicing["faults"].empty());
+    CHECK(slicing["material_ml"].get<double>() > 0.1);
+    CHECK(std::filesystem::file_size(folder / "vase.sl1") > 10000);
+}
+
+TEST_CASE("slice: a definition goes to CuraEngine", "[cli][programs]") {
+    const std::string definition = "/usr/share/cura/resources/definitions/creality_ender3.def.json";
+    if (std::system("command -v CuraEngine > /dev/null 2>&1") != 0 || !std::filesystem::exists(definition)) {
+        WARN("CuraEngine or its definitions are not installed: skipped");
+        return;
+    }
+    const TemporaryFolder folder;
+    const ProgramResult run = carve_with(folder, definition);
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    CHECK(nlohmann::json::parse(slurp(folder / "vase.json"))["slicing"]["layers"].get<int>() > 50);
 }
 
 }  // namespace
