@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 
@@ -81,6 +82,17 @@ std::vector<std::string> warnings_in(const std::string& text) {
     return warnings;
 }
 
+/// CuraEngine's totals stand in what it says; those in its G-code are placeholders.
+void add_cura_totals(const std::string& text, SlicedPrint& print) {
+    const auto after = [&](const std::string& mark) -> std::optional<double> {
+        const auto at = text.rfind(mark);
+        if (at == text.npos) return std::nullopt;
+        return std::strtod(text.c_str() + at + mark.size(), nullptr);
+    };
+    print.seconds = after("Print time (s): ");
+    if (const auto mm3 = after("Filament (mm^3): ")) print.material_ml = *mm3 / 1000.0;
+}
+
 void judge_bed(const SlicedPrint& print, std::vector<std::string>& faults) {
     if (!print.room_mm) return;
     const auto& [low, high] = *print.room_mm;
@@ -156,8 +168,9 @@ Slicing slice(const std::string& model, const std::string& profile, const RunCon
     Slicing result;
     result.bytes = read_file(fs::path(out));
     const std::string source = sliced_path(model, profile);
-    const SlicedPrint print =
+    SlicedPrint print =
         slicer == Slicer::kPrusaResin ? read_sla_archive(result.bytes, source) : read_gcode(result.bytes, source);
+    if (slicer == Slicer::kCura) add_cura_totals(said.err + said.out, print);
     result.record = record_of(print);
     result.record.slicer = program_of(slicer);
     result.record.profile = profile;

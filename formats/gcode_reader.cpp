@@ -1,6 +1,7 @@
 #include "formats/gcode_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -52,9 +53,11 @@ void read_bed(std::string_view text, std::array<Vec3, 2>& room) {
     if (low[0] < high[0]) room[0].head<2>() = low, room[1].head<2>() = high;
 }
 
+/// PrusaSlicer's names, and CuraEngine's in capitals.
 bool belongs_to_object(std::string_view type) {
-    return !type.starts_with("Skirt") && !type.starts_with("Support") && !type.starts_with("Wipe") &&
-           !type.starts_with("Custom");
+    constexpr std::array<std::string_view, 7> kOthers = {"Skirt", "Support", "Wipe",       "Custom",
+                                                         "SKIRT", "SUPPORT", "PRIME-TOWER"};
+    return std::ranges::none_of(kOthers, [&](std::string_view other) { return type.starts_with(other); });
 }
 
 class Follower {
@@ -100,6 +103,8 @@ class Follower {
         };
         if (const auto type = after("TYPE:"))
             object_ = belongs_to_object(*type);
+        else if (text.starts_with("LAYER_COUNT:"))
+            start_over();
         else if (const auto z = number("Z:"))
             layer_top_ = *z;
         else if (const auto height = number("HEIGHT:"))
@@ -119,6 +124,12 @@ class Follower {
             has_bed_ = true;
         } else if (const auto high = number(" max_print_height ="))
             height_ = *high;
+    }
+
+    /// CuraEngine says when the model begins; what was printed before cleaned the nozzle.
+    void start_over() {
+        printed_.layers.clear();
+        any_ = false;
     }
 
     /// Calls `found(letter, value)` for each word.

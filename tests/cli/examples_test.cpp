@@ -88,6 +88,8 @@ TEST_CASE("examples: every numbered script runs and makes valid models", "[cli][
         CHECK(slurp(out / "05_orientation_up.3mf") != slurp(out / "05_orientation_vector.3mf"));
     }
     if (name == "12_marks") CHECK(slurp(out / "12_marks.gcode").find(";LAYER_CHANGE") != std::string::npos);
+    if (name == "11_slice")
+        CHECK(nlohmann::json::parse(slurp(out / "11_slice.json"))["slicing"]["layers"].get<int>() > 100);
     if (name == "11_slice") CHECK(slurp(out / "11_slice.gcode").find(";LAYER_CHANGE") != std::string::npos);
 }
 

@@ -166,7 +166,11 @@ TEST_CASE("slice: a definition goes to CuraEngine", "[cli][programs]") {
     const ProgramResult run = carve_with(folder, definition);
     CAPTURE(run.err);
     REQUIRE(run.exit_code == 0);
-    CHECK(nlohmann::json::parse(slurp(folder / "vase.json"))["slicing"]["layers"].get<int>() > 50);
+    const auto slicing = nlohmann::json::parse(slurp(folder / "vase.json"))["slicing"];
+    CHECK(slicing["layers"].get<int>() > 50);
+    CHECK(slicing["seconds"].get<double>() > 600.0);
+    CHECK(slicing["material_ml"].get<double>() > 0.5);
+    CHECK(slicing["parts_compared"] == true);
 }
 
 }  // namespace

@@ -64,6 +64,17 @@ TEST_CASE("gcode: lengths of filament may be told from the start", "[formats][gc
     CHECK_THROWS_AS(read_gcode("G1 X5 Y5\n; nothing\n", "empty.gcode"), InvalidInput);
 }
 
+TEST_CASE("gcode: CuraEngine's model begins after the nozzle is clean", "[formats][gcode]") {
+    const SlicedPrint print = read_gcode(
+        "M82\nG1 X1 Y20 Z0.3\nG1 X1 Y200 E15\n;LAYER_COUNT:1\n;LAYER:0\nG0 X9 Y9 Z0.2\n;TYPE:SKIRT\nG1 X30 Y9 E16\n"
+        ";TYPE:WALL-OUTER\nG0 X12 Y12\nG1 X14 Y12 E17\n;TYPE:SUPPORT-INTERFACE\nG1 X20 Y30 E18\n",
+        "a.gcode");
+    REQUIRE(print.layers.size() == 1);
+    CHECK(print.layers[0].top_mm == 0.2);
+    for (const Vec2& p : print.layers[0].points_mm) CHECK((p[0] >= 12.0 && p[0] <= 14.0 && p[1] == 12.0));
+    CHECK(print.max_mm.isApprox(Vec3(30, 30, 0.2)));
+}
+
 TEST_CASE("gcode: a height without a line is told", "[formats][gcode]") {
     const SlicedPrint print = read_gcode(gcode_of({kPair, kPair, {}, {}, kPair, kPair, {}, kPair}, 0.2), "a.gcode");
     REQUIRE(print.empty_between_mm.size() == 2);
