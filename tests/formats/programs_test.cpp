@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include "formats/carved_threemf_writer.h"
 #include "formats/mesh_file.h"
@@ -71,18 +72,25 @@ TEST_CASE("admesh reads our STL as we wrote it", "[formats][programs]") {
     }
 }
 
-TEST_CASE("PrusaSlicer finds our STL, 3MF and AMF closed and of the right volume", "[formats][programs]") {
+/// slic3r repairs before it counts: equal counts and volume say that there was nothing to repair.
+TEST_CASE("slicers find our STL, OBJ, 3MF and AMF closed, of the right volume and size", "[formats][programs]") {
+    const std::string program = GENERATE("prusa-slicer", "slic3r");
     for (const NamedMesh& model : models()) {
         const std::vector<Rgb8> colors(model.mesh.triangles.size(), Rgb8{200, 50, 50});
-        for (const std::string extension : {".stl", ".3mf", ".amf"}) {
-            CAPTURE(model.name, extension);
+        Vec3 low = model.mesh.positions_mm.front(), high = low;
+        for (const Vec3& p : model.mesh.positions_mm) low = low.cwiseMin(p), high = high.cwiseMax(p);
+        for (const std::string extension : {".stl", ".obj", ".3mf", ".amf"}) {
+            CAPTURE(program, model.name, extension);
             const fs::path path = scratch(model.name + extension);
             write_mesh(path, {model.mesh, colors, model.name});
-            const std::string said = output_of("prusa-slicer", "--info " + path.string());
+            const std::string said = output_of(program, "--info " + path.string());
             fs::remove(path);
+            fs::remove(obj_materials_path(path));
             if (said.empty()) return;
             CHECK(number_after(said, "number_of_facets") == static_cast<double>(model.mesh.triangles.size()));
             CHECK(number_after(said, "volume") == Approx(testing::volume_mm3(model.mesh)).epsilon(1e-4));
+            for (const auto& [label, axis] : {std::pair("size_x", 0), {"size_y", 1}, {"size_z", 2}})
+                CHECK(number_after(said, label) == Approx(high[axis] - low[axis]).margin(2e-5));
             CHECK_THAT(said, Catch::Contains("manifold = yes"));
         }
     }
