@@ -220,6 +220,14 @@ void print_slicing(const RunReport& report) {
         for (const std::string& text : *list) fmt::print(stderr, "fretwork: warning: {}: {}\n", s.output, text);
 }
 
+void check_paint(const CarveOptions& options, const OutputOptions& output) {
+    if (output.paint == PaintFormat::kNone) return;
+    if (output.colour == OutputColor::kNone)
+        throw ConstraintsNotMet("output.paint needs colours, and output.colour = none leaves none; use exemplar");
+    if (output_format(options.output, options.export_format) != MeshFormat::kThreemf && !options.run.quiet)
+        fmt::print(stderr, "fretwork: warning: {} is not painted: only triangles of a 3MF can be\n", options.output);
+}
+
 int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     if (options.check) return check(options, interrupt);
     if (options.output.empty()) throw InvalidSetting("no output: give -o FILE, or --check to carve nothing");
@@ -233,12 +241,12 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     Opened opened = open(options, run.slice(0.0, 0.02));
     const Settings& settings = opened.request.settings;
     check_package(options, opened.model);
-    if (settings.output.paint != PaintFormat::kNone && settings.output.colour == OutputColor::kNone)
-        throw ConstraintsNotMet("output.paint needs colours, and output.colour = none leaves none; use exemplar");
+    check_paint(options, settings.output);
     std::vector<CarvedTarget> carved =
         carve_targets(opened.model, settings, opened.request.pictures, limits, run.slice(0.02, 0.95));
 
-    paint_targets(carved, settings.output);
+    if (output_format(options.output, options.export_format) == MeshFormat::kThreemf)
+        paint_targets(carved, settings.output);
     const std::vector<RunFile> pictures = opened.request.pictures.files(settings.output.source);
     std::vector<RunReport> reports;
     for (const CarvedTarget& target : carved) reports.push_back(target.report);

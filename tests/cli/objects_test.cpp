@@ -324,6 +324,10 @@ TEST_CASE("cli: painted extruders survive a round trip through PrusaSlicer", "[c
     const ProgramResult plain = run_program({"carve", folder / "ball.off", "--pattern", "cells", "--paint", "prusa",
                                              "-D", "output.colour=none", "-o", folder / "none.3mf"});
     CHECK(plain.exit_code == 3);
+    const ProgramResult stl = run_program({"carve", folder / "ball.off", "--pattern", "cells", "--preset", "draft",
+                                           "--paint", "prusa", "-o", folder / "ball.stl"});
+    CHECK(stl.exit_code == 0);
+    CHECK(stl.err.find("ball.stl is not painted") != std::string::npos);
 }
 
 }  // namespace

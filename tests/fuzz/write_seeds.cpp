@@ -64,6 +64,12 @@ int main(int count, char** arguments) {
           "</constellation></amf>");
     write(root / "parameter_set", "sets.json",
           "{\"parameterSets\": {\"a\": {\"synthesis.seed\": \"5\"}}, \"fileFormatVersion\": \"1\"}");
+    write(
+        root / "gcode", "two_layers.gcode",
+        "; external perimeters extrusion width = "
+        "0.45mm\nG90\nM83\n;TYPE:Perimeter\n;LAYER_CHANGE\n;Z:0.2\n;HEIGHT:0.2\n"
+        "G1 X5 Y5 F900\nG1 X9 Y5 E.5\n;Z:0.6\nG1 Z.6\nG1 X9 Y9 E1e-1\nG92 E0\nG91\nG1 X-1 E1\n"
+        "; estimated printing time (normal mode) = 1h 2m 3s\n; bed_shape = 0x0,50x0,50x40\n; max_print_height = 30\n");
     write(root / "ply", "binary.ply", write_mesh({mesh, colors}, MeshFormat::kPly));
     write(
         root / "ply", "ascii.ply",
