@@ -12,8 +12,10 @@
 namespace fretwork {
 namespace {
 
-constexpr double kMostSpacingMm = 0.4;  // of the points along a line
-constexpr double kGapShare = 0.5;       // of a layer's height, before a step up counts as a gap
+constexpr double kMostSpacingMm = 0.4;    // of the points along a line
+constexpr double kFarthestMm = 10'000.0;  // no printer reaches as far
+constexpr std::size_t kMostPoints = 50'000'000;
+constexpr double kGapShare = 0.5;  // of a layer's height, before a step up counts as a gap
 
 /// A number at the start of the text, which is moved behind it.
 std::optional<double> take_number(std::string_view& text) {
@@ -62,6 +64,8 @@ bool belongs_to_object(std::string_view type) {
 
 class Follower {
   public:
+    explicit Follower(std::string_view source) : source_(source) {}
+
     void line(std::string_view text) {
         if (text.starts_with(";")) return comment(text.substr(1));
         text = text.substr(0, text.find(';'));
@@ -76,8 +80,8 @@ class Follower {
             set(text.substr(command.size()));
     }
 
-    SlicedPrint finish(std::string_view source) {
-        if (printed_.layers.empty()) throw InvalidInput(std::string(source) + ": no line is printed in this G-code");
+    SlicedPrint finish() {
+        if (printed_.layers.empty()) throw InvalidInput(std::string(source_) + ": no line is printed in this G-code");
         if (has_bed_) {
             room_[1][2] = height_ > 0.0 ? height_ : std::numeric_limits<double>::infinity();
             printed_.room_mm = room_;
@@ -177,11 +181,17 @@ class Follower {
             printed_.layers.push_back({top, layer_height_.value_or(top - below), {}});
         }
         const Vec2 a = from.head<2>(), b = to.head<2>();
+        if (from.cwiseAbs().maxCoeff() > kFarthestMm || to.cwiseAbs().maxCoeff() > kFarthestMm)
+            throw InvalidInput(std::string(source_) + ": found a line that ends over 10 m from the origin");
         const int steps = std::max(1, static_cast<int>(std::ceil((b - a).norm() / kMostSpacingMm)));
+        points_ += static_cast<std::size_t>(steps) + 1;
+        if (points_ > kMostPoints) throw InvalidInput(std::string(source_) + ": found over 20 km of lines");
         for (int i = 0; i <= steps; ++i) printed_.layers.back().points_mm.emplace_back(a + (b - a) * i / steps);
     }
 
+    std::string_view source_;
     SlicedPrint printed_;
+    std::size_t points_ = 0;
     std::array<Vec3, 2> room_ = {Vec3::Zero(), Vec3::Zero()};
     bool has_bed_ = false;
     double height_ = 0.0;
@@ -194,13 +204,13 @@ class Follower {
 }  // namespace
 
 SlicedPrint read_gcode(std::string_view text, std::string_view source) {
-    Follower follower;
+    Follower follower(source);
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         follower.line(text.substr(0, end));
         text.remove_prefix(std::min(end + 1, text.size()));
     }
-    return follower.finish(source);
+    return follower.finish();
 }
 
 }  // namespace fretwork

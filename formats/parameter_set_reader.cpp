@@ -32,6 +32,8 @@ json parse_shallow(std::string_view text, std::string_view source) {
         return json::parse(text, limit_depth);
     } catch (const json::parse_error& error) {
         fail_parse(source, place_in(text, error.byte), "broken JSON", "parameter sets as OpenSCAD writes them");
+    } catch (const json::out_of_range&) {
+        fail_parse(source, "somewhere", "a number beyond 1e308", "parameter sets as OpenSCAD writes them");
     }
 }
 

@@ -38,6 +38,7 @@ TEST_CASE("parameter sets: an unknown set and other mistakes are errors", "[form
         {"{\"parameterSets\": {\"s\": {\"a\": [1]}}}", "a: found array"},
         {"{\"parameterSets\": {\"s\": 1}}", "found number"},
         {"{\"parameterSets\": {\"s\": {}}, \"fileFormatVersion\": \"2\"}", "fileFormatVersion"},
+        {"{\"parameterSets\": {\"s\": {\"a\": 1e999}}}", "beyond 1e308"},
         {std::string(100000, '['), "found"},
         {std::string(2 << 20, ' '), "1 MiB"},
     };

@@ -62,6 +62,10 @@ TEST_CASE("gcode: lengths of filament may be told from the start", "[formats][gc
     CHECK(print.max_mm[0] == 9.0);
     CHECK(print.layers[0].points_mm.back() == Vec2(6, 9));  // it draws back at (5, 9), and prints the last millimetre
     CHECK_THROWS_AS(read_gcode("G1 X5 Y5\n; nothing\n", "empty.gcode"), InvalidInput);
+    CHECK_THROWS_WITH(read_gcode("M83\nG1 X5e9 Y5 E1\n", "far.gcode"), Catch::Contains("far.gcode"));
+    std::string endless = "M83\n";
+    for (int i = 0; i < 4000; ++i) endless += "G1 X9999 E1\nG1 X-9999 E1\n";
+    CHECK_THROWS_WITH(read_gcode(endless, "long.gcode"), Catch::Contains("20 km"));
 }
 
 TEST_CASE("gcode: CuraEngine's model begins after the nozzle is clean", "[formats][gcode]") {
