@@ -73,8 +73,8 @@ std::vector<SettingTable> render_marks(const OpenScad& scad, const std::vector<S
                                        std::set<std::string>& files, const RunControl& run) {
     if (marks.empty()) return {};
     if (!scad.render("none", run).draws_nothing())
-        throw InvalidInput(fmt::format("{}: draws something outside of fretwork_body(); a part with marks stands in it",
-                                       scad.path()));
+        throw InvalidInput(
+            fmt::format("{}: draws something outside of fretwork_body(); a part with marks stands in it", scad.path()));
     std::vector<SettingTable> tables;
     for (const ScadMark& mark : marks) {
         ScadRender render = scad.render(mark.kind + ":" + mark.name, run);
