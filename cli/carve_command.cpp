@@ -152,6 +152,11 @@ bool below_standard(const RunReport& report) {
            (report.print && !report.print->faults.empty()) || (report.slicing && !report.slicing->faults.empty());
 }
 
+void put_summary(const CarveOptions& options, const CarveModel& model, const std::vector<RunReport>& reports,
+                 Interrupt& interrupt) {
+    if (!options.summary.empty()) put(options.summary, summary_json(model, reports, ReportTimes::kInclude), interrupt);
+}
+
 int check(const CarveOptions& options, Interrupt& interrupt) {
     const RunControl run = control_of(options.run, interrupt);
     Opened opened = open(options, run.slice(0.0, 0.2));
@@ -162,16 +167,17 @@ int check(const CarveOptions& options, Interrupt& interrupt) {
         print_warnings(opened.model, reports);
         for (std::size_t i = 0; i < reports.size(); ++i) print_checked(prefix_of(opened.model, i), reports[i]);
     }
-    if (!options.summary.empty())
-        put(options.summary, summary_json(opened.model, reports, ReportTimes::kInclude), interrupt);
+    put_summary(options, opened.model, reports, interrupt);
     return kDone;
 }
 
-void put_carved(const CarveOptions& options, const CarvedModel& result, const PictureFiles& pictures,
-                const RunControl& run, Interrupt& interrupt) {
+void put_carved(const CarveOptions& options, const CarvedModel& result, const std::vector<RunReport>& reports,
+                const PictureFiles& pictures, const RunControl& run, Interrupt& interrupt) {
     const MeshFormat format = output_format(options.output, options.export_format);
     const MeshBytes carved = carved_bytes(result, options.output, format, run.slice(0.0, 0.6));
     if (!options.preview.empty()) put(options.preview, preview_png(result, run.slice(0.6, 0.9)), interrupt);
+    // With --slice, the slicer has its word first.
+    if (options.slice.empty()) put_summary(options, result.model, reports, interrupt);
     if (!options.dependencies.empty()) {
         std::vector<std::string> inputs = files_read(options.pattern, pictures);
         inputs.insert(inputs.begin(), result.model.read_beside.begin(), result.model.read_beside.end());
@@ -179,6 +185,7 @@ void put_carved(const CarveOptions& options, const CarvedModel& result, const Pi
         if (!options.slice.empty()) inputs.push_back(options.slice);
         put(options.dependencies, make_rule(options.output, inputs), interrupt);
     }
+    // The result last: whoever sees it sees everything else too.
     if (!carved.materials_path.empty()) put(carved.materials_path, carved.materials, interrupt);
     put(options.output, carved.bytes, interrupt);
     run.checkpoint("write", 1.0);
@@ -197,13 +204,20 @@ void check_slicing(const CarveOptions& options) {
     check_target(sliced_path(options.output, options.slice), {options.model.path, options.slice});
 }
 
-/// The carved file is in place by now and stays, whatever the slicer says.
-void slice_result(const CarveOptions& options, RunReport& report, const RunControl& run, Interrupt& interrupt) {
+/// The carved file is in place by now and stays, whatever the slicer says; so does what the run found out.
+void slice_result(const CarveOptions& options, const CarveModel& model, std::vector<RunReport>& reports,
+                  const RunControl& run, Interrupt& interrupt) {
     if (options.slice.empty()) return;
     run.checkpoint("slice", 0.0);
-    Slicing slicing = slice(options.output, options.slice, run);
-    put(slicing.record.output, slicing.bytes, interrupt);
-    report.slicing = std::move(slicing.record);
+    try {
+        Slicing slicing = slice(options.output, options.slice, run);
+        put(slicing.record.output, slicing.bytes, interrupt);
+        reports.front().slicing = std::move(slicing.record);
+    } catch (...) {
+        put_summary(options, model, reports, interrupt);
+        throw;
+    }
+    put_summary(options, model, reports, interrupt);
     run.checkpoint("slice", 1.0);
 }
 
@@ -251,11 +265,9 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     std::vector<RunReport> reports;
     for (const CarvedTarget& target : carved) reports.push_back(target.report);
     const double written = options.slice.empty() ? 1.0 : 0.96;
-    put_carved(options, {opened.model, carved, settings, pictures}, opened.request.pictures, run.slice(0.95, written),
-               interrupt);
-    slice_result(options, reports.front(), run.slice(written, 1.0), interrupt);
-    if (!options.summary.empty())
-        put(options.summary, summary_json(opened.model, reports, ReportTimes::kInclude), interrupt);
+    put_carved(options, {opened.model, carved, settings, pictures}, reports, opened.request.pictures,
+               run.slice(0.95, written), interrupt);
+    slice_result(options, opened.model, reports, run.slice(written, 1.0), interrupt);
     if (!options.run.quiet) {
         print_warnings(opened.model, reports);
         for (std::size_t i = 0; i < reports.size(); ++i)

@@ -140,43 +140,52 @@ SliceRecord record_of(const SlicedPrint& print) {
     return record;
 }
 
+const char* ending_of(Slicer slicer) {
+    return slicer == Slicer::kPrusaResin ? ".sl1" : ".gcode";
+}
+
+/// What the slicer has said; its result lies at `out` then.
+std::string run_slicer(Slicer slicer, const std::string& model, const std::string& profile, const fs::path& out,
+                       const ScratchFolder& folder, const RunControl& run) {
+    ProcessResult said;
+    if (slicer == Slicer::kCura) {
+        const fs::path stl = folder / "model.stl";
+        write_mesh(stl, {read_mesh(fs::path(model)).mesh});
+        said = run_process(cura_line(profile, out.string(), stl.string()), run, cura_environment(profile));
+    } else {
+        said = run_process(prusa_line(slicer, profile, out.string(), model), run);
+    }
+    std::error_code none;
+    const std::string text = said.out + said.err;
+    if (said.exit_code != 0 || !fs::exists(out, none))
+        throw InvalidInput(fmt::format("{}: {} made nothing of it with {}: exit code {}{}{}", model, program_of(slicer),
+                                       profile, said.exit_code, text.empty() ? "" : ", ", last_line(text)));
+    return text;
+}
+
 }  // namespace
 
 std::string sliced_path(const std::string& model, const std::string& profile) {
-    const Slicer slicer = slicer_of(profile);
-    return fs::path(model).replace_extension(slicer == Slicer::kPrusaResin ? ".sl1" : ".gcode").string();
+    return fs::path(model).replace_extension(ending_of(slicer_of(profile))).string();
 }
 
 Slicing slice(const std::string& model, const std::string& profile, const RunControl& run) {
     const Slicer slicer = slicer_of(profile);
+    const bool resin = slicer == Slicer::kPrusaResin;
     const ScratchFolder folder;
-    const std::string out = (folder / (slicer == Slicer::kPrusaResin ? "out.sl1" : "out.gcode")).string();
-    ProcessResult said;
-    const TriangleMesh mesh = read_mesh(fs::path(model)).mesh;
-    if (slicer == Slicer::kCura) {
-        const std::string stl = (folder / "model.stl").string();
-        write_mesh(fs::path(stl), {mesh});
-        said = run_process(cura_line(profile, out, stl), run, cura_environment(profile));
-    } else {
-        said = run_process(prusa_line(slicer, profile, out, model), run);
-    }
-    std::error_code none;
-    if (said.exit_code != 0 || !fs::exists(out, none))
-        throw InvalidInput(fmt::format("{}: {} made nothing of it with {}: exit code {}{}{}", model, program_of(slicer),
-                                       profile, said.exit_code, said.err.empty() && said.out.empty() ? "" : ", ",
-                                       last_line(said.out + said.err)));
+    const fs::path out = folder / (std::string("out") + ending_of(slicer));
+    const std::string said = run_slicer(slicer, model, profile, out, folder, run);
     Slicing result;
-    result.bytes = read_file(fs::path(out));
-    const std::string source = sliced_path(model, profile);
-    SlicedPrint print =
-        slicer == Slicer::kPrusaResin ? read_sla_archive(result.bytes, source) : read_gcode(result.bytes, source);
-    if (slicer == Slicer::kCura) add_cura_totals(said.err + said.out, print);
+    result.bytes = read_file(out);
+    const std::string source = fs::path(model).replace_extension(ending_of(slicer)).string();
+    SlicedPrint print = resin ? read_sla_archive(result.bytes, source) : read_gcode(result.bytes, source);
+    if (slicer == Slicer::kCura) add_cura_totals(said, print);
     result.record = record_of(print);
     result.record.slicer = program_of(slicer);
     result.record.profile = profile;
     result.record.output = source;
-    result.record.warnings = warnings_in(said.out + said.err);
-    if (slicer != Slicer::kPrusaResin) judge_parts(print, mesh, run, result.record);
+    result.record.warnings = warnings_in(said);
+    if (!resin) judge_parts(print, read_mesh(fs::path(model)).mesh, run, result.record);
     return result;
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "cli/command.h"
@@ -25,10 +26,24 @@ struct VerifyOptions {
     RunOptions run;
 };
 
-PrintabilitySettings settings_of(const VerifyOptions& options) {
+/// Objects of a plate and solids of a CAD model lie apart on purpose; groups of an OBJ or solids of an STL need not.
+std::size_t bodies_in(const MeshFile& file, MeshFormat format) {
+    switch (format) {
+        case MeshFormat::kThreemf:
+        case MeshFormat::kAmf:
+        case MeshFormat::kStep:
+        case MeshFormat::kIges:
+        case MeshFormat::kBrep:
+            return std::max<std::size_t>(file.parts.size(), 1);
+        default:
+            return 1;
+    }
+}
+
+PrintabilitySettings settings_of(const VerifyOptions& options, std::size_t bodies) {
     const double two_lines = 2.0 * options.fabrication.nozzle_mm;
     return {options.fabrication.layer_height_mm, options.fabrication.overhang_deg,
-            options.min_feature_mm.value_or(two_lines), options.min_hole_mm.value_or(two_lines)};
+            options.min_feature_mm.value_or(two_lines), options.min_hole_mm.value_or(two_lines), bodies};
 }
 
 /// Faults of the surface itself, in words.
@@ -47,11 +62,14 @@ std::vector<std::string> mesh_faults(const MeshReport& mesh) {
 int verify_command(const VerifyOptions& options, Interrupt& interrupt) {
     const ThreadLimit threads(options.run.threads);
     const RunControl run = control_of(options.run, interrupt);
-    const MeshFile file = read_model(options.model, run.slice(0.0, 0.2));
+    const RunControl reading = run.slice(0.0, 0.2);
+    const ModelBytes model = read_bytes(options.model, reading);
+    const MeshFile file = read_model(model, options.model.cad, reading);
     // Vertices of formats that know none are joined; nothing else changes in a sound mesh.
     const TriangleMesh mesh = repair_mesh(file.mesh, {}, run.slice(0.2, 0.3)).mesh;
     const MeshReport report = report_mesh(mesh, CountSelfIntersections::kYes, run.slice(0.3, 0.5));
-    const PrintabilityReport print = printability(mesh, settings_of(options), run.slice(0.5, 1.0));
+    const PrintabilityReport print =
+        printability(mesh, settings_of(options, bodies_in(file, model.format)), run.slice(0.5, 1.0));
     std::vector<std::string> faults = mesh_faults(report);
     for (std::string& fault : print_faults(print, options.fabrication.nozzle_mm)) faults.push_back(std::move(fault));
 

@@ -159,40 +159,40 @@ class TriangleSet : public Shape {
     SegmentTree rim_;
 };
 
+/// How far a volume reaches beyond its surface, so that what lies on it is inside: far below what can be printed, far
+/// above the rounding of coordinates in files.
+constexpr double kTouchMm = 0.01;
+
 /// What lies inside a closed surface, or on it.
 class Volume : public Shape {
   public:
-    explicit Volume(TriangleMesh surface) : surface_(std::move(surface)), tree_(surface_) {}
+    explicit Volume(SurfaceTree tree) : tree_(std::move(tree)) {}
     [[nodiscard]] double signed_distance_mm(const Vec3& p, std::uint32_t) const override {
         return tree_.signed_distance_mm(p) - kTouchMm;
     }
 
-    /// Either a vertex of one lies within the other, or an edge of one passes through the other.
-    [[nodiscard]] bool meets(const TriangleMesh& mesh) const {
-        const auto inside = [&](const Vec3& p) { return signed_distance_mm(p, 0) <= 0.0; };
-        if (std::any_of(mesh.positions_mm.begin(), mesh.positions_mm.end(), inside)) return true;
-        if (any_edge_hits(mesh, tree_)) return true;
-        const SurfaceTree other(mesh);
-        const auto touches = [&](const Vec3& p) { return other.closest(p, 2.0 * kTouchMm).distance_mm <= kTouchMm; };
-        return std::any_of(surface_.positions_mm.begin(), surface_.positions_mm.end(), touches) ||
-               any_edge_hits(surface_, other);
-    }
-
   private:
-    /// Far below what can be printed, far above the rounding of coordinates in files.
-    static constexpr double kTouchMm = 0.01;
-
-    static bool any_edge_hits(const TriangleMesh& mesh, const SurfaceTree& tree) {
-        return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
-            for (std::size_t k = 0; k < 3; ++k)
-                if (tree.first_hit(mesh.positions_mm[t[k]], mesh.positions_mm[t[(k + 1) % 3]])) return true;
-            return false;
-        });
-    }
-
-    TriangleMesh surface_;
     SurfaceTree tree_;
 };
+
+bool any_edge_hits(const TriangleMesh& mesh, const SurfaceTree& tree) {
+    return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (tree.first_hit(mesh.positions_mm[t[k]], mesh.positions_mm[t[(k + 1) % 3]])) return true;
+        return false;
+    });
+}
+
+/// Either a vertex of one lies within the other, or an edge of one passes through the other.
+bool volume_meets(const TriangleMesh& volume, const SurfaceTree& volume_tree, const TriangleMesh& mesh) {
+    const auto inside = [&](const Vec3& p) { return volume_tree.signed_distance_mm(p) <= kTouchMm; };
+    if (std::any_of(mesh.positions_mm.begin(), mesh.positions_mm.end(), inside)) return true;
+    if (any_edge_hits(mesh, volume_tree)) return true;
+    const SurfaceTree mesh_tree(mesh);
+    const auto touches = [&](const Vec3& p) { return mesh_tree.closest(p, 2.0 * kTouchMm).distance_mm <= kTouchMm; };
+    return std::any_of(volume.positions_mm.begin(), volume.positions_mm.end(), touches) ||
+           any_edge_hits(volume, mesh_tree);
+}
 
 class Everywhere : public Shape {
   public:
@@ -264,13 +264,13 @@ struct Preparer {
                 need(v < volume.surface.positions_mm.size(), region,
                      "a triangle names vertex " + std::to_string(v) + ", and there are " +
                          std::to_string(volume.surface.positions_mm.size()));
-        RepairedMesh repaired = repair_mesh(volume.surface);
+        const RepairedMesh repaired = repair_mesh(volume.surface);
         need(repaired.counts.border_edges == 0, region,
              "its surface is not closed: " + std::to_string(repaired.counts.border_edges) +
                  " edges have a triangle on one side only");
-        auto shape = std::make_unique<Volume>(std::move(repaired.mesh));
-        need(shape->meets(mesh), region, "meets no part of the surface");
-        return shape;
+        SurfaceTree tree(repaired.mesh);
+        need(volume_meets(repaired.mesh, tree, mesh), region, "meets no part of the surface");
+        return std::make_unique<Volume>(std::move(tree));
     }
 };
 

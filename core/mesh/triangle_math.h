@@ -10,8 +10,10 @@
 
 namespace fretwork {
 
-inline Vec3 closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-    const Vec3 ab = b - a;
+/// In the plane or in space.
+template <class Vec>
+Vec closest_on_segment(const Vec& p, const Vec& a, const Vec& b) {
+    const Vec ab = b - a;
     const double length2 = ab.squaredNorm();
     if (!(length2 > 0.0)) return a;
     const double t = (p - a).dot(ab) / length2;

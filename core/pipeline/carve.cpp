@@ -131,12 +131,12 @@ std::vector<PlannedStage> planned_stages(const Settings& settings) {
     return stages;
 }
 
-PrintRecord print_record(const TriangleMesh& carved, const FabricationOptions& fabrication,
+PrintRecord print_record(const TriangleMesh& carved, std::size_t bodies, const FabricationOptions& fabrication,
                          const ResolvedSettings& resolved, const RunControl& run) {
     PrintRecord record;
     record.report = printability(carved,
                                  {fabrication.layer_height_mm, fabrication.overhang_deg,
-                                  resolved.enlarge.min_feature_mm, resolved.enlarge.min_hole_mm},
+                                  resolved.enlarge.min_feature_mm, resolved.enlarge.min_hole_mm, bodies},
                                  run);
     record.faults = print_faults(record.report, fabrication.nozzle_mm);
     return record;
@@ -231,7 +231,7 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     note_output(result.carved, carved, report);
     if (!is_draft(settings))
         report.print = plan.run("printability", [&](const RunControl& r) {
-            return print_record(result.carved.mesh, settings.fabrication, resolved, r);
+            return print_record(result.carved.mesh, report.shell.components, settings.fabrication, resolved, r);
         });
     result.carved.triangle_colors =
         output_colors(std::move(result.carved.triangle_colors), settings.output.colour, input.exemplar);

@@ -18,12 +18,14 @@ struct PrintedLayer {
 
 struct LostParts {
     bool compared = false;  ///< false: what is printed is not this mesh as it stands, but turned, copied or arranged
-    std::vector<PrintPlace>
-        places;  ///< one for each part lost, in the mesh's coordinates; size is the root of the area
+    /// One for each part lost, in the mesh's coordinates; size is the root of the area.
+    std::vector<PrintPlace> places;
 };
 
 /// The mesh is shifted so that its box lies where the lines do. Parts narrower than one and a half lines are not asked
-/// for. \param layers  upwards from the bed \param line_mm  width of a printed line, above 0
+/// for.
+/// \param layers   upwards from the bed
+/// \param line_mm  width of a printed line, above 0
 LostParts find_lost_parts(const TriangleMesh& mesh, const std::vector<PrintedLayer>& layers, double line_mm,
                           const RunControl& run = {});
 

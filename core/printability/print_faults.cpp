@@ -17,8 +17,7 @@ std::string place_of(const PrintPlace& place) {
 std::vector<std::string> print_faults(const PrintabilityReport& report, double nozzle_mm) {
     std::vector<std::string> faults;
     if (report.loose_parts > 0)
-        faults.push_back(fmt::format("{} loose {} beside the largest", report.loose_parts,
-                                     report.loose_parts == 1 ? "part" : "parts"));
+        faults.push_back(fmt::format("{} loose {}", report.loose_parts, report.loose_parts == 1 ? "part" : "parts"));
     if (report.empty_layers > 0)
         faults.push_back(fmt::format("{} of {} layers are empty", report.empty_layers, report.layers));
     if (report.first_layer_contact_mm2 < kLeastContactMm2)

@@ -83,7 +83,7 @@ void measure_widths(const TriangleMesh& mesh, const PrintabilitySettings& settin
 }
 
 /// Pieces of surface by the sign of what they enclose.
-void count_pieces(const TriangleMesh& mesh, const RunControl& run, PrintabilityReport& report) {
+void count_pieces(const TriangleMesh& mesh, std::size_t bodies, const RunControl& run, PrintabilityReport& report) {
     const MeshComponents components = find_components(mesh, ConnectedBy::kEdge, run);
     std::vector<double> volume(components.count, 0.0);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -99,7 +99,7 @@ void count_pieces(const TriangleMesh& mesh, const RunControl& run, PrintabilityR
         else
             ++solids;
     }
-    report.loose_parts = solids > 0 ? solids - 1 : 0;
+    report.loose_parts = solids > bodies ? solids - bodies : 0;
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ PrintabilityReport printability(const TriangleMesh& mesh, const PrintabilitySett
     check(settings);
     PrintabilityReport report;
     report.layer_height_mm = settings.layer_height_mm;
-    count_pieces(mesh, run, report);
+    count_pieces(mesh, settings.bodies, run, report);
     const std::vector<Layer> layers = cut_layers(mesh, settings.layer_height_mm, run);
     run.checkpoint(kStage, 0.2);
     report.layers = layers.size();

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/vec.h"
+#include "core/mesh/triangle_math.h"
 
 namespace fretwork {
 namespace {
@@ -19,10 +19,7 @@ constexpr int kSamplesAcross = 40;
 constexpr double kLeastSpacingMm = 0.1;
 
 Vec2 closest_on(const Edge& edge, const Vec2& p) {
-    const Vec2 along = edge.second - edge.first;
-    const double length2 = along.squaredNorm();
-    const double t = length2 > 0.0 ? std::clamp((p - edge.first).dot(along) / length2, 0.0, 1.0) : 0.0;
-    return edge.first + t * along;
+    return closest_on_segment(p, edge.first, edge.second);
 }
 
 void add_edges(const Polygon& border, std::vector<Edge>& edges) {

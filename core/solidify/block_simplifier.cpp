@@ -78,7 +78,7 @@ bool BlockSimplifier::keeps_border(std::size_t toward, std::size_t borders) cons
     if (borders == 0) return true;
     if (borders != 2 || (toward != border_spokes_[0] && toward != border_spokes_[1])) return false;
     const Vec3 on =
-        closest_on_segment(Vec3::Zero(), spokes_[border_spokes_[0]].offset, spokes_[border_spokes_[1]].offset);
+        closest_on_segment<Vec3>(Vec3::Zero(), spokes_[border_spokes_[0]].offset, spokes_[border_spokes_[1]].offset);
     return on.squaredNorm() <= border_mm_ * border_mm_;
 }
 

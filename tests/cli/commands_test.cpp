@@ -12,6 +12,7 @@
 #include "formats/image_file.h"
 #include "formats/mesh_file.h"
 #include "support/make_meshes.h"
+#include "support/make_packages.h"
 
 namespace fretwork {
 namespace {
@@ -312,6 +313,14 @@ TEST_CASE("cli: verify says how a model prints, and --strict what is against it"
     CHECK(loose.err.find("fault: 1 loose part") != std::string::npos);
     CHECK(loose.out.find("sound = false") != std::string::npos);
     CHECK(run_program({"verify", folder / "two.stl"}).exit_code == 0);
+    // Objects of a plate lie apart on purpose.
+    const std::string cube = testing::make_tetrahedron(1) + testing::make_tetrahedron(2);
+    spit(folder / "plate.3mf",
+         testing::make_package(testing::make_model(
+             cube, "<item objectid=\"1\"/><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 50 0 0\"/>")));
+    const ProgramResult plate = run_program({"verify", folder / "plate.3mf"});
+    CHECK(plate.exit_code == 0);
+    CHECK(plate.out.find("loose_parts = 0") != std::string::npos);
 
     write("blade.stl", testing::make_box(Vec3::Zero(), Vec3(10, 0.3, 4), {1, 1, 1}));
     CHECK(run_program({"verify", folder / "blade.stl", "--strict"}).err.find("a strand is 0.30 mm wide") !=

@@ -133,8 +133,9 @@ TEST_CASE("slice: what the printer cannot reach or the slicer will not do is tol
     CAPTURE(tiny.err);
     CHECK(tiny.exit_code == 2);
     CHECK(tiny.err.find("tiny.ini") != std::string::npos);
-    // Whatever the slicer says, the carved model is there.
+    // Whatever the slicer says, the carved model is there, and what the run found out.
     CHECK(std::filesystem::exists(folder / "vase.3mf"));
+    CHECK_FALSE(nlohmann::json::parse(slurp(folder / "vase.json")).contains("slicing"));
 
     CHECK(carve_with(folder, folder / "no.ini").exit_code == 2);
     CHECK(carve_with(folder, folder / "profile.txt").exit_code == 1);

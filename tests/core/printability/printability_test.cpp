@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/mesh/mesh_report.h"
+#include "core/printability/print_faults.h"
 #include "support/make_meshes.h"
 
 namespace fretwork {
@@ -82,6 +83,8 @@ TEST_CASE("printability: islands are parts that begin in the air", "[printabilit
     CHECK(report.islands_per_layer[20] == 1);
     CHECK(report.islands_per_layer[30] == 1);
     CHECK(report.loose_parts == 2);
+    const TriangleMesh pair = blocks({{Vec3(0, 0, 0), Vec3(5, 5, 5)}, {Vec3(9, 0, 0), Vec3(13, 4, 5)}});
+    CHECK(printability(pair, {.bodies = 2}).loose_parts == 0);
 }
 
 TEST_CASE("printability: overhang depends on the slope and on what is allowed", "[printability]") {
@@ -172,6 +175,43 @@ TEST_CASE("printability: layers add up to the volume, turned and on any number o
         CHECK(again.longest_bridge.size_mm == report.longest_bridge.size_mm);
         CHECK(again.longest_bridge.at_mm == report.longest_bridge.at_mm);
     }
+}
+
+TEST_CASE("printability: each fault is told with its numbers, and nothing else is a fault", "[printability]") {
+    PrintabilityReport report;
+    report.layers = 10;
+    report.first_layer_contact_mm2 = 5.0;
+    report.islands = 3;
+    report.island_places = {{Vec3(1, 2, 3), 1.0}};
+    report.closed_cavities = 1;
+    report.least_solid = PrintPlace{Vec3(4, 5, 6), 0.45};
+    CHECK(print_faults(report, 0.4).empty());
+    const std::vector<std::string> cautions = print_cautions(report);
+    REQUIRE(cautions.size() == 2);
+    CHECK_THAT(cautions[0], Catch::Contains("3 places") && Catch::Contains("(1.0, 2.0, 3.0)"));
+    const auto only = [&](const std::string& says) {
+        const std::vector<std::string> faults = print_faults(report, 0.4);
+        REQUIRE(faults.size() == 1);
+        CHECK_THAT(faults[0], Catch::Contains(says));
+    };
+    report.least_solid->size_mm = 0.35;
+    only("0.35 mm wide at (4.0, 5.0, 6.0) mm");
+    report.least_solid.reset();
+    report.first_layer_contact_mm2 = 0.5;
+    only("only 0.5 mm2");
+    report.first_layer_contact_mm2 = 5.0;
+    report.empty_layers = 2;
+    only("2 of 10 layers");
+    report.empty_layers = 0;
+    report.loose_parts = 2;
+    only("2 loose parts");
+}
+
+TEST_CASE("printability: heights without material between others are empty layers", "[printability]") {
+    const PrintabilityReport report =
+        printability(blocks({{Vec3(0, 0, 0), Vec3(5, 5, 2)}, {Vec3(0, 0, 3), Vec3(5, 5, 4)}}), {});
+    CHECK(report.layers == 20);
+    CHECK(report.empty_layers == 5);
 }
 
 TEST_CASE("printability: settings out of range are refused", "[printability][errors]") {
