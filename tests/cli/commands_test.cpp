@@ -329,5 +329,23 @@ TEST_CASE("cli: verify says how a model prints, and --strict what is against it"
     CHECK(run_program({"verify", folder / "block.stl", "--layer-height", "0"}).exit_code == 1);
 }
 
+TEST_CASE("cli: carve --strict counts what is against printing", "[cli]") {
+    const TemporaryFolder folder;
+    write_mesh(std::filesystem::path(folder / "ball.stl"), {testing::make_icosphere(10.0, 4)});
+    // The thinner the first layer, the less of a ball stands on the bed.
+    const auto with_layers_of = [&](const char* height) {
+        return run_program({"carve", folder / "ball.stl", "--pattern", "dots", "-D", "exemplar.invert=true",
+                            "--resolution", "40", "-D", std::string("fabrication.layer_height_mm=") + height,
+                            "--strict", "-o", folder / "ball.3mf"});
+    };
+    const ProgramResult thick = with_layers_of("0.4");
+    CAPTURE(thick.err);
+    CHECK(thick.exit_code == 0);
+    const ProgramResult thin = with_layers_of("0.01");
+    CAPTURE(thin.err);
+    CHECK(thin.exit_code == 4);
+    CHECK(thin.err.find("stand on the bed") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace fretwork

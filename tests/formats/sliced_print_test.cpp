@@ -60,7 +60,9 @@ TEST_CASE("gcode: lengths of filament may be told from the start", "[formats][gc
     REQUIRE(print.layers.size() == 1);
     CHECK(print.layers[0].top_mm == 0.3);
     CHECK(print.max_mm[0] == 9.0);
-    CHECK(print.layers[0].points_mm.back() == Vec2(6, 9));  // it draws back at (5, 9), and prints the last millimetre
+    // It draws back on the way to (5, 9), and prints the last millimetre.
+    CHECK(print.layers[0].points_mm.back() == Vec2(6, 9));
+    for (const Vec2& p : print.layers[0].points_mm) CHECK_FALSE((p[1] == 9.0 && p[0] > 6.0 && p[0] < 9.0));
     CHECK_THROWS_AS(read_gcode("G1 X5 Y5\n; nothing\n", "empty.gcode"), InvalidInput);
     CHECK_THROWS_WITH(read_gcode("M83\nG1 X5e9 Y5 E1\n", "far.gcode"), Catch::Contains("far.gcode"));
     std::string endless = "M83\n";

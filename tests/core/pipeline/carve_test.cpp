@@ -89,6 +89,11 @@ TEST_CASE("carve: printability is judged, but not of a draft", "[pipeline]") {
     CHECK(print.layers == 100);
     CHECK(print.material_mm3 == Approx(result.report.mesh.report.volume_mm3));
     CHECK(print.loose_parts == 0);
+    // Two rings through each other are two pieces, and none of them is loose.
+    const CarveResult rings = carve(input_for(testing::make_linked_tori(20.0, 5.0), "cells"), full);
+    REQUIRE(rings.report.shell.components == 2);
+    REQUIRE(rings.report.print);
+    CHECK(rings.report.print->report.loose_parts == 0);
 }
 
 TEST_CASE("carve: threads do not show in the result", "[pipeline][determinism]") {

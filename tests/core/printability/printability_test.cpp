@@ -84,6 +84,7 @@ TEST_CASE("printability: islands are parts that begin in the air", "[printabilit
     CHECK(report.islands_per_layer[30] == 1);
     CHECK(report.loose_parts == 2);
     const TriangleMesh pair = blocks({{Vec3(0, 0, 0), Vec3(5, 5, 5)}, {Vec3(9, 0, 0), Vec3(13, 4, 5)}});
+    CHECK(printability(pair, {}).loose_parts == 1);
     CHECK(printability(pair, {.bodies = 2}).loose_parts == 0);
 }
 
@@ -145,6 +146,9 @@ TEST_CASE("printability: round and square rods have their own width, whatever wa
 TEST_CASE("printability: edges and corners are not thin", "[printability]") {
     CHECK_FALSE(printability(make_box(Vec3::Zero(), Vec3(5, 5, 5), {3, 3, 3}), {}).least_solid);
     CHECK_FALSE(printability(make_sphere(4.0, 48, 96), {}).least_solid);
+    // Nor is a prism of three sides, whose walls face each other by 60 degrees only.
+    CHECK_FALSE(printability(make_cylinder(6.0, 8.0, 3), {}).least_solid);
+    CHECK(printability(make_cylinder(6.0, 8.0, 3), {}).thin_share == 0.0);
     // A right-angled groove is no gap.
     CHECK_FALSE(printability(blocks({{Vec3(0, 0, 0), Vec3(9, 9, 3)}, {Vec3(0, 0, 0), Vec3(3, 9, 9)}}), {}).least_hole);
 }
