@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "core/base/counter_random.h"
 #include "core/base/parallel.h"
@@ -136,33 +137,69 @@ double regular_polygon(const Vec2& p, int sides, double inner_radius, double cor
     return (ahead > 0 ? std::hypot(ahead, beyond) : ahead) - corner_radius;
 }
 
-Stroke::Stroke(std::vector<Vec2> points, std::vector<double> radius)
-    : points_(std::move(points)), radius_(std::move(radius)), center_(Vec2::Zero()) {
-    Vec2 low = points_.front(), high = points_.front();
-    for (const Vec2& p : points_) {
+namespace {
+
+/// A disc around points, as wide as the stroke is there.
+struct Disc {
+    Vec2 center = Vec2::Zero();
+    double reach = 0.0;
+};
+
+Disc disc_around(std::span<const Vec2> points, std::span<const double> radius) {
+    Vec2 low = points.front(), high = points.front();
+    for (const Vec2& p : points) {
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
     }
-    center_ = (low + high) / 2;
-    for (std::size_t i = 0; i + 1 < points_.size(); ++i) lengths_.push_back((points_[i + 1] - points_[i]).norm());
+    Disc disc{(low + high) / 2, 0.0};
+    for (std::size_t i = 0; i < points.size(); ++i)
+        disc.reach = std::max(disc.reach, (points[i] - disc.center).norm() + radius[i]);
+    return disc;
+}
+
+}  // namespace
+
+Stroke::Stroke(std::vector<Vec2> points, std::vector<double> radius)
+    : points_(std::move(points)), radius_(std::move(radius)), center_(Vec2::Zero()) {
+    const Disc whole = disc_around(points_, radius_);
+    center_ = whole.center;
+    reach_ = whole.reach;
     widest_ = *std::ranges::max_element(radius_);
-    for (std::size_t i = 0; i < points_.size(); ++i)
-        reach_ = std::max(reach_, (points_[i] - center_).norm() + radius_[i]);
+    for (std::size_t i = 0; i + 1 < points_.size(); ++i) lengths_.push_back((points_[i + 1] - points_[i]).norm());
+    for (std::size_t first = 0; first + 1 < points_.size(); first += kRunSegments) {
+        const std::size_t count = std::min(kRunSegments + 1, points_.size() - first);
+        const Disc disc =
+            disc_around(std::span(points_).subspan(first, count), std::span(radius_).subspan(first, count));
+        runs_.push_back({disc.center - center_, disc.reach, first, first + count - 1});
+    }
 }
 
 double Stroke::distance(const Vec2& p, const Torus& torus) const {
     const Vec2 q = torus.shortest(p - center_);
     const double away = q.norm() - reach_;
     if (away > kNear) return away;
+    // A hair, so that rounding never rules out what holds the nearest point.
+    constexpr double kHair = 1e-9;
+    const auto is_beyond = [&](const Vec2& center, double reach, double best) {
+        const double spare = best + reach + kHair;
+        return spare < 0 || (q - center).squaredNorm() > spare * spare;
+    };
+    // Whatever comes first shows that most of the rest is farther away.
+    const auto near_first =
+        std::ranges::min_element(runs_, {}, [&](const Run& run) { return (q - run.center).squaredNorm(); });
     double best = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
-        const Vec2 a = points_[i] - center_, ab = points_[i + 1] - points_[i];
-        // No point of the segment is nearer than its start less its length; most are ruled out without a root.
-        const double spare = best + lengths_[i] + widest_;
-        if (spare > 0 && (q - a).squaredNorm() > spare * spare) continue;
-        const double t = std::clamp((q - a).dot(ab) / std::max(ab.squaredNorm(), 1e-12), 0.0, 1.0);
-        best = std::min(best, (q - a - t * ab).norm() - (radius_[i] + t * (radius_[i + 1] - radius_[i])));
-    }
+    const auto look_at = [&](const Run& run) {
+        if (is_beyond(run.center, run.reach, best)) return;
+        for (std::size_t i = run.first; i < run.last; ++i) {
+            const Vec2 a = points_[i] - center_, ab = points_[i + 1] - points_[i];
+            if (is_beyond(a, lengths_[i] + widest_, best)) continue;
+            const double t = std::clamp((q - a).dot(ab) / std::max(ab.squaredNorm(), 1e-12), 0.0, 1.0);
+            best = std::min(best, (q - a - t * ab).norm() - (radius_[i] + t * (radius_[i + 1] - radius_[i])));
+        }
+    };
+    look_at(*near_first);
+    for (const Run& run : runs_)
+        if (&run != &*near_first) look_at(run);
     return best;
 }
 

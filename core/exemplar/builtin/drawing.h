@@ -61,7 +61,7 @@ PatternPictures draw(int width_px, int height_px, const std::function<Sample(con
 /// A curved stroke of varying width with round ends.
 class Stroke {
   public:
-    /// `points` at most a few px apart; `radius` per point.
+    /// `points` two or more, at most a few px apart; `radius` per point.
     Stroke(std::vector<Vec2> points, std::vector<double> radius);
 
     /// Distance of `p`, taken to the nearest copy of the stroke on the torus. Exact near the stroke,
@@ -73,6 +73,14 @@ class Stroke {
   private:
     std::vector<Vec2> points_;
     std::vector<double> radius_;
+    /// Segments in a row, with a disc that holds them: most are ruled out by it together.
+    struct Run {
+        Vec2 center;  ///< from that of the stroke
+        double reach;
+        std::size_t first, last;  ///< points
+    };
+    static constexpr std::size_t kRunSegments = 8;
+    std::vector<Run> runs_;
     std::vector<double> lengths_;  ///< of the segments
     Vec2 center_;
     double reach_ = 0;   ///< from the centre to the farthest point of the stroke
