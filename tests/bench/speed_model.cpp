@@ -1,5 +1,6 @@
 #include "speed_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/make_meshes.h"
@@ -8,6 +9,23 @@ namespace fretwork::bench {
 namespace {
 
 constexpr double kRadiusMm = 60.0;
+
+/// Bumps, so that coordinates use all their digits.
+Vec3 uneven(const Vec3& p) {
+    return p * (1.0 + 1e-3 * std::sin(1.7 * p[0]) * std::sin(2.3 * p[1]) * std::sin(1.9 * p[2]) +
+                1e-5 * std::sin(97 * p[0]));
+}
+
+/// Triangles near each other in no order of rows, as remeshing leaves them; each begins at any of its corners.
+void mix(std::vector<Triangle>& triangles) {
+    constexpr std::size_t window = 64;
+    const std::vector<Triangle> old = triangles;
+    for (std::size_t t = 0; t < old.size() / window * window; ++t) {
+        Triangle& moved = triangles[t / window * window + (t * 37 + t / window) % window];
+        moved = old[t];
+        std::ranges::rotate(moved, moved.begin() + static_cast<std::ptrdiff_t>(t * 5 % 7 % 3));
+    }
+}
 
 /// One of sixteen tones per channel, the same within blocks of 2 mm.
 Rgb8 color_at(const Vec3& p) {
@@ -24,6 +42,8 @@ Rgb8 color_at(const Vec3& p) {
 SpeedModel make_speed_model(int side) {
     SpeedModel model;
     model.mesh = testing::make_sphere(kRadiusMm, side + 1, side);
+    for (Vec3& p : model.mesh.positions_mm) p = uneven(p);
+    mix(model.mesh.triangles);
     model.colors.reserve(model.mesh.triangles.size());
     for (const Triangle& t : model.mesh.triangles) model.colors.push_back(color_at(model.mesh.positions_mm[t[0]]));
     return model;
