@@ -202,9 +202,9 @@ struct ZipReader::Impl {
         part.stored = stat.comp_method == ZIP_CM_STORE;
         part.data.size = stat.size;
         part.data.crc32 = stat.crc;
-        part.data.bytes.resize(stat.comp_size);
-        for (std::size_t done = 0; done < part.data.bytes.size();) {
-            const zip_int64_t got = zip_fread(file.get(), part.data.bytes.data() + done, stat.comp_size - done);
+        std::string& bytes = part.data.blocks.emplace_back(stat.comp_size, '\0');
+        for (std::size_t done = 0; done < bytes.size();) {
+            const zip_int64_t got = zip_fread(file.get(), bytes.data() + done, stat.comp_size - done);
             if (got <= 0) fail(entry.name, std::to_string(done) + " packed bytes", std::to_string(stat.comp_size));
             done += static_cast<std::size_t>(got);
         }
