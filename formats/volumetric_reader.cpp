@@ -144,6 +144,8 @@ class VolumetricLoader {
             auto impl = std::make_unique<VolumetricObject::Impl>();
             impl->name = object.name;
             for (const threemf::VolumeProperty& property : find(model_.volumes, object.volume, "volumedata")) {
+                if (!property.name.empty() && property.name.find(':') == std::string::npos)
+                    fail("property " + in_quotes(property.name), "a name with the prefix of whoever defines it");
                 const Channel channel = channel_of(property);
                 if (property.name.empty()) {
                     impl->color = channel;
