@@ -11,6 +11,7 @@
 #include "formats/threemf_model_reader.h"
 #include "formats/threemf_names.h"
 #include "formats/threemf_reader.h"
+#include "formats/xml_reader.h"
 #include "formats/zip_reader.h"
 #include "support/make_packages.h"
 
@@ -161,6 +162,13 @@ TEST_CASE("3mf elements: blocks of any size give the same", "[formats][threemf][
     }
 }
 
+TEST_CASE("3mf elements: a text ends where its root does", "[formats][threemf][errors]") {
+    const std::string xml = make_model(make_tetrahedron(1), "");
+    CHECK(read_model(xml + " \n<!-- end -->\n ", "m").objects.size() == 1);
+    CHECK_THROWS_WITH(read_model(xml + "more", "m"), Catch::Contains("well-formed"));
+    CHECK_THROWS_WITH(read_model(xml.substr(0, xml.size() - 3), "m"), Catch::Contains("well-formed"));
+}
+
 TEST_CASE("3mf elements: bytes of two to a character are read as well", "[formats][threemf]") {
     const std::string xml = Sample(2).model(Spelling::kPlain);
     std::string utf16 = "\xFE\xFF";
@@ -171,16 +179,48 @@ TEST_CASE("3mf elements: bytes of two to a character are read as well", "[format
 TEST_CASE("3mf elements: those of another namespace are none of ours", "[formats][threemf]") {
     const std::string corners = "x=\"1\" y=\"2\" z=\"3\"/>";
     // The first vertices stand where the namespace without a prefix is another one; one has a namespace of its own.
-    const Model model =
-        read_model("<c:model xmlns:c=\"" + std::string(threemf::kCore) +
-                       "\" xmlns=\"urn:other\"><c:resources><c:object id=\"1\"><c:mesh><c:vertices><vertex " + corners +
-                       "<c:vertex " + corners + "<vertex " + corners +
-                       "</c:vertices></c:mesh></c:object><object xmlns=\"" + std::string(threemf::kCore) +
-                       "\" id=\"2\"><mesh><vertices><vertex " + corners + "<vertex xmlns=\"urn:other\" " + corners +
-                       "<vertex " + corners + "</vertices></mesh></object></c:resources><c:build/></c:model>",
-                   "m");
-    CHECK(model.objects.at(1).mesh.positions_mm.size() == 1);
-    CHECK(model.objects.at(2).mesh.positions_mm.size() == 2);
+    const std::string xml = "<c:model xmlns:c=\"" + std::string(threemf::kCore) +
+                            "\" xmlns=\"urn:other\"><c:resources><c:object id=\"1\"><c:mesh><c:vertices><vertex " +
+                            corners + "<c:vertex " + corners + "<vertex " + corners +
+                            "</c:vertices></c:mesh></c:object><object xmlns=\"" + std::string(threemf::kCore) +
+                            "\" id=\"2\"><mesh><vertices><vertex " + corners + "<vertex xmlns=\"urn:other\" " +
+                            corners + "<vertex " + corners +
+                            "</vertices></mesh></object></c:resources><c:build/></c:model>";
+    const RunControl run;
+    for (const std::size_t size : {xml.size(), std::size_t{1}}) {
+        threemf::ModelReader reader("m", {}, run);
+        for (std::size_t at = 0; at < xml.size(); at += size) reader.feed(std::string_view(xml).substr(at, size));
+        const Model model = reader.finish();
+        CHECK(model.objects.at(1).mesh.positions_mm.size() == 1);
+        CHECK(model.objects.at(2).mesh.positions_mm.size() == 2);
+    }
+}
+
+TEST_CASE("xml: the reader tells when elements may be kept from it", "[formats]") {
+    struct Deaf : XmlHandler {
+        void start(const XmlElement&) override {}
+        void end() override {}
+        void text(std::string_view) override {}
+    };
+    const auto told_after = [](std::string_view xml) {
+        Deaf handler;
+        XmlReader reader(handler, "m");
+        reader.feed(xml);
+        return reader.at_content();
+    };
+    CHECK(told_after("<a><b>"));
+    CHECK(told_after("<?xml version=\"1.0\" encoding=\"UTF-8\"?><a><b/>"));
+    CHECK(told_after("<a><b c=\"&lt;\"/><!-- d -->"));
+    CHECK_FALSE(told_after(""));
+    CHECK_FALSE(told_after("<a"));
+    CHECK_FALSE(told_after("<a><b c=\"d"));
+    CHECK_FALSE(told_after("<a><b c=\">"));
+    CHECK_FALSE(told_after("<a><!-- <b>"));
+    CHECK_FALSE(told_after("<a><![CDATA[<b>"));
+    CHECK_FALSE(told_after("<a><?b <c>"));
+    CHECK_FALSE(told_after("<a></a>"));
+    CHECK_FALSE(told_after("<?xml version=\"1.0\" encoding=\"ISO-2022-JP\"?><a><b>"));
+    CHECK_FALSE(told_after(std::string_view("\xFF\xFE<\0a\0>\0", 8)));
 }
 
 /// What is thrown, without the name that tells the spelling.
