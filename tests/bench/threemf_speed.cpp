@@ -247,24 +247,24 @@ std::string cost_table(const std::vector<Row>& rows, const RawSize& raw) {
     return table.text();
 }
 
-/// Ours with colours and voxel data against the fastest of the others with the mesh alone.
+/// Ours against the fastest of the others with the mesh alone.
 std::string promise_table(const std::vector<Row>& rows, const RawSize& raw) {
-    MarkdownTable table({"promise", "to stay below", "ours", "kept"});
-    const auto add = [&](const std::string& what, double limit, double ours, const char* unit) {
-        table.add({what, fmt::format("{:.2f}{}", limit, unit), fmt::format("{:.2f}{}", ours, unit),
-                   ours < limit ? "yes" : "**no**"});
-    };
-    for (const Direction direction : {Direction::kWrite, Direction::kRead}) {
+    MarkdownTable table({"", "file", "measure", "to stay below", "ours", "kept"});
+    for (const Row& row : rows) {
+        if (!row.ours) continue;
+        const auto add = [&](const char* measure, double limit, double ours) {
+            table.add({word_of(row.direction), row.file, measure, fmt::format("{:.2f}", limit),
+                       fmt::format("{:.2f}", ours), ours < limit ? "yes" : "**no**"});
+        };
         std::optional<Cost> others;
-        for (const Row& row : rows)
-            if (!row.ours && row.direction == direction) others = others ? least(*others, *row.cost) : *row.cost;
-        const Row& ours = *std::ranges::find(rows, direction, &Row::direction);
-        const std::string what = word_of(direction);
+        for (const Row& other : rows)
+            if (!other.ours && other.direction == row.direction)
+                others = others ? least(*others, *other.cost) : *other.cost;
         if (others) {
-            add(what + ", beside the fastest of the others", others->seconds, ours.cost->seconds, " s");
-            add(what + ", CPU, beside the fastest of the others", others->cpu_seconds, ours.cost->cpu_seconds, " s");
+            add("seconds", others->seconds, row.cost->seconds);
+            add("CPU seconds", others->cpu_seconds, row.cost->cpu_seconds);
         }
-        add(what + ", peak / raw as held", 4.0, static_cast<double>(ours.cost->peak_bytes) / raw.held, "");
+        add("peak / raw as held", 4.0, static_cast<double>(row.cost->peak_bytes) / raw.held);
     }
     return table.text();
 }
