@@ -55,7 +55,7 @@ struct PackedSource {
         while (done < length && block < part.blocks.size()) {
             std::string& bytes = part.blocks[block];
             const std::size_t count = std::min<std::size_t>(length - done, bytes.size() - at);
-            std::memcpy(to + done, bytes.data() + at, count);
+            std::copy_n(bytes.data() + at, count, to + done);
             done += count;
             at += count;
             if (at < bytes.size()) break;
