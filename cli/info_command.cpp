@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cli/carved_facts.h"
 #include "cli/command.h"
 #include "cli/files.h"
 #include "cli/pattern_options.h"
@@ -13,12 +14,13 @@
 #include "core/base/error.h"
 #include "core/exemplar/exemplar.h"
 #include "core/mesh/mesh_report.h"
-#include "core/pipeline/object_settings.h"
-#include "core/pipeline/region_schema.h"
-#include "core/pipeline/settings_schema.h"
 #include "formats/facts_text.h"
 #include "formats/image_file.h"
+#include "formats/part_facts.h"
+#include "formats/threemf_contents.h"
+#include "formats/threemf_facts.h"
 #include "formats/threemf_objects.h"
+#include "formats/threemf_reader.h"
 
 namespace fretwork::cli {
 namespace {
@@ -41,10 +43,13 @@ int print(const Facts& facts, bool as_json) {
     return kDone;
 }
 
+/// Required extensions that are not known are listed rather than refused.
+constexpr ThreemfReadOptions kReadAll{.ignore_required = true};
+
 /// What --objects can name.
 void add_objects(const ModelBytes& model, Facts& facts, const RunControl& run) {
     std::vector<Facts> objects;
-    for (const ThreemfObject& object : read_threemf_objects(model.bytes, model.name, {}, run).objects)
+    for (const ThreemfObject& object : read_threemf_objects(model.bytes, model.name, kReadAll, run).objects)
         objects.push_back({{{"name", object.name},
                             {"id", std::int64_t{object.key.id}},
                             {"part_number", object.part_number},
@@ -55,10 +60,16 @@ void add_objects(const ModelBytes& model, Facts& facts, const RunControl& run) {
     facts.add("objects", objects);
 }
 
+std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files) {
+    return {files.begin(), files.end()};
+}
+
 int mesh_info(const InfoOptions& options, const RunControl& run) {
     const RunControl reading = run.slice(0.0, 0.3);
     const ModelBytes model = read_bytes(options.model, reading);
-    const MeshFile file = read_model(model, options.model.cad, reading);
+    const bool threemf = model.format == MeshFormat::kThreemf;
+    const MeshFile file = threemf ? read_threemf(model.bytes, model.name, reading, kReadAll)
+                                  : read_model(model, options.model.cad, reading);
     const MeshReport report = report_mesh(file.mesh, CountSelfIntersections::kYes, run.slice(0.3, 1.0));
     const Vec3 size = report.max_mm - report.min_mm;
     Facts facts;
@@ -69,10 +80,17 @@ int mesh_info(const InfoOptions& options, const RunControl& run) {
     facts.add("size_mm", std::vector<double>{size[0], size[1], size[2]});
     add_mesh_facts(report, facts);
     std::vector<Facts> parts;
-    for (const MeshPart& part : file.parts)
-        parts.push_back({{{"name", part.name}, {"triangles", std::int64_t{part.triangle_count}}}});
+    for (const MeshPart& part : file.parts) parts.push_back(part_facts(part));
     facts.add("parts", parts);
-    if (model.format == MeshFormat::kThreemf) add_objects(model, facts, run);
+    std::vector<Facts> faces;
+    for (const MeshPart& face : file.faces) faces.push_back(face_facts(file.mesh, face));
+    if (!faces.empty()) facts.add("faces", faces);
+    if (!file.read_beside.empty()) facts.add("read_beside", names_of(file.read_beside));
+    if (threemf) {
+        add_objects(model, facts, run);
+        add_package_facts(read_threemf_contents(model.bytes, model.name, run), facts);
+        add_carved_facts(model, facts);
+    }
     facts.add("warnings", file.warnings);
     return print(facts, options.json);
 }
@@ -97,10 +115,6 @@ int picture_info(const InfoOptions& options) {
     return print(facts, options.json);
 }
 
-FactValue fact_of(const SettingValue& value) {
-    return std::visit([](const auto& held) { return FactValue(held); }, value);
-}
-
 int spec_info(const InfoOptions& options) {
     PatternOptions pattern;
     pattern.pattern = options.model.path;
@@ -108,15 +122,7 @@ int spec_info(const InfoOptions& options) {
     Facts facts;
     facts.add("file", options.model.path);
     facts.add("kind", "spec");
-    for (const SettingInfo& info : all_settings())
-        if (const auto value = info.get(settings); value && value != info.get(Settings{}))
-            facts.add("changed." + info.key, fact_of(*value));
-    for (const TableInfo& table : table_infos()) {
-        const auto tables = tables_from(settings);
-        facts.add(table.array,
-                  static_cast<std::int64_t>(std::ranges::count(tables, table.array, &SettingTable::array)));
-    }
-    facts.add(std::string(kObjectArray), static_cast<std::int64_t>(settings.objects.size()));
+    add_settings_facts(settings, "", facts);
     return print(facts, options.json);
 }
 

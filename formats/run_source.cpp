@@ -32,6 +32,17 @@ class SourceReader {
         if (zip_.contains(root)) relations_ = zip_.read(root, kMaxTextBytes);
     }
 
+    [[nodiscard]] bool names(std::string_view relation) const {
+        return !target_of_relation(relations_, relation).empty();
+    }
+
+    [[nodiscard]] std::string text_at(std::string_view relation) const {
+        const std::string target = target_of_relation(relations_, relation);
+        if (target.empty())
+            throw InvalidInput(name_ + ": found no record of a run, expected a 3MF that was carved by Fretwork");
+        return zip_.read(without_slash(target), kMaxTextBytes);
+    }
+
     RunSource read() const {
         RunSource source;
         source.request_toml = text_at(threemf::kRequestRelation);
@@ -49,13 +60,6 @@ class SourceReader {
     }
 
   private:
-    [[nodiscard]] std::string text_at(std::string_view relation) const {
-        const std::string target = target_of_relation(relations_, relation);
-        if (target.empty())
-            throw InvalidInput(name_ + ": found no record of a run, expected a 3MF that was carved by Fretwork");
-        return zip_.read(without_slash(target), kMaxTextBytes);
-    }
-
     [[nodiscard]] RunFile file_of(const Json& json) const {
         RunFile file;
         file.path = json.at("path");
@@ -101,6 +105,15 @@ std::vector<RecordPart> parts_of(const RunSource& source) {
         {kFolder + "request.toml", threemf::kRequestRelation, source.request_toml}};
     parts.insert(parts.end(), files.begin(), files.end());
     return parts;
+}
+
+bool has_run_source(std::string_view package, std::string_view name) {
+    return SourceReader(package, name).names(threemf::kRunRelation);
+}
+
+std::string read_run_report(std::string_view package, std::string_view name) {
+    const SourceReader reader(package, name);
+    return reader.names(threemf::kReportRelation) ? reader.text_at(threemf::kReportRelation) : std::string{};
 }
 
 RunSource read_run_source(std::string_view package, std::string_view name) {

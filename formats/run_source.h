@@ -32,6 +32,12 @@ RunFile run_file(std::string path, std::string_view bytes, bool keep);
 /// record (`package_record.h`).
 std::vector<RecordPart> parts_of(const RunSource& source);
 
+/// Whether the relationships of the package name the record of a run. \throws InvalidInput  no ZIP
+bool has_run_source(std::string_view package, std::string_view name);
+
+/// The report that lies beside it (report_json.h); empty where there is none. \throws InvalidInput  it cannot be read
+std::string read_run_report(std::string_view package, std::string_view name);
+
 /// Reads it back, by the relationships of the package.
 /// \param name  of the package, for messages
 /// \throws InvalidInput  no 3MF; none of Fretwork's; a part that is missing, broken or not what its hash says.

@@ -1,7 +1,5 @@
 #include "formats/slicer_paint.h"
 
-#include <string_view>
-
 #include "core/base/error.h"
 
 namespace fretwork {
@@ -13,6 +11,14 @@ std::string paint_state_text(int extruder) {
     const auto number = static_cast<std::size_t>(extruder);
     if (number < 3) return {kDigits[4 * number]};
     return {kDigits[number - 3], 'C'};
+}
+
+int extruder_of(std::string_view state_text) {
+    if (state_text == "4") return 1;
+    if (state_text == "8") return 2;
+    if (state_text.size() != 2 || state_text[1] != 'C') return 0;
+    const std::size_t digit = std::string_view("0123456789ABCD").find(state_text[0]);
+    return digit == std::string_view::npos ? 0 : static_cast<int>(digit) + 3;
 }
 
 }  // namespace fretwork

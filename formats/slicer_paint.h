@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/pipeline/settings.h"
 
@@ -19,5 +20,8 @@ struct TrianglePaint {
 /// end: how the triangle is split (not at all), and its state, which takes four bits more from 3 on.
 /// \param extruder  1 to 16, what PrusaSlicer can hold
 std::string paint_state_text(int extruder);
+
+/// The other way round; 0 for a triangle that is split, and for what no slicer writes.
+int extruder_of(std::string_view state_text);
 
 }  // namespace fretwork

@@ -208,12 +208,10 @@ class ModelReader::Handler : public XmlHandler {
     }
 
     void check_required(std::string_view prefixes) {
-        static constexpr std::array<std::string_view, 6> kKnown = {kCore,       kMaterial,     kVolumetric,
-                                                                   kProduction, kTriangleSets, kFretwork};
         TextScanner words(prefixes, "", {.comment = 0});
         for (std::string_view prefix = words.word(); !prefix.empty(); prefix = words.word()) {
             const std::string space = xml_.namespace_of(prefix);
-            if (std::ranges::find(kKnown, space) != kKnown.end()) continue;
+            if (is_understood(space)) continue;
             const std::string found = "the required extension " + in_quotes(prefix) + " (" + in_quotes(space) + ")";
             if (!ignore_required_) xml_.fail(found, "core, materials, production, triangle sets or volumetric");
             model_.warnings.push_back(found + " is not understood");

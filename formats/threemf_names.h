@@ -1,6 +1,8 @@
 // Names that the 3MF specifications fix.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 
 namespace fretwork::threemf {
@@ -11,6 +13,12 @@ inline constexpr std::string_view kVolumetric = "http://schemas.3mf.io/3dmanufac
 inline constexpr std::string_view kProduction = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
 inline constexpr std::string_view kTriangleSets = "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07";
 inline constexpr std::string_view kFretwork = "http://fretwork.dev/3mf/2026/11";
+
+/// Whether a model may require the extension: what it says is read, or does not change the shape.
+constexpr bool is_understood(std::string_view space) {
+    constexpr std::array known = {kCore, kMaterial, kVolumetric, kProduction, kTriangleSets, kFretwork};
+    return std::ranges::find(known, space) != known.end();
+}
 
 inline constexpr std::string_view kSlic3r = "http://schemas.slic3r.org/3mf/2017/06";
 /// Metadata without which PrusaSlicer does not read what is painted; both "1".

@@ -13,6 +13,8 @@
 namespace fretwork::testing {
 namespace {
 
+using Json = nlohmann::json;
+
 const std::vector<std::string> kQuick = {
     "--preset", "draft", "--resolution", "32", "-D", "structure.max_iterations=1", "-D", "structure.samples=60"};
 
@@ -127,6 +129,63 @@ TEST_CASE("cli: a carved 3MF shows a picture of itself", "[cli][threemf]") {
 TEST_CASE("content hash: the standard's own example", "[formats]") {
     CHECK(content_hash("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     CHECK(content_hash("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST_CASE("cli: info tells what a carved package holds and how it was made", "[cli][again][info]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.off", vase_off());
+    const ProgramResult run =
+        run_program(carve_line({folder / "vase.off", "--pattern", "cells", "-o", folder / "out.3mf", "--seed", "7",
+                                "-D", "output.paint=prusa", "-D", "output.extruders=3"}));
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    const Json info = Json::parse(run_program({"info", folder / "out.3mf", "--json"}).out);
+    const Json &carved = info["carved"], &package = info["package"];
+    CHECK(carved["model"]["sha256"] == content_hash(slurp(folder / "vase.off")));
+    CHECK(carved["model"]["in_package"] == true);
+    CHECK(carved["spec"]["changed"]["synthesis"]["seed"] == 7);
+    CHECK(carved["spec"]["changed"]["exemplar"]["pattern"] == "cells");
+    CHECK(carved["shell"]["resolution"] == 32);
+    CHECK(carved["mesh"]["triangles"] == info["mesh"]["triangles"]);
+    CHECK(package["voxel_data"][0]["properties"][1]["name"] == "fw:solid");
+    CHECK(package["voxel_data"][0]["properties"][1]["voxel_mm"][0].get<double>() ==
+          Approx(carved["shell"]["voxel_mm"].get<double>()));
+    CHECK(package["thumbnail"] == "Metadata/thumbnail.png");
+    CHECK(package["paint"][0]["triangles"] == info["mesh"]["triangles"]);
+    std::size_t painted = 0;
+    for (const auto& [extruder, triangles] : package["paint"][0]["extruders"].items())
+        painted += triangles.get<std::size_t>();
+    CHECK(painted == info["mesh"]["triangles"]);
+    // A plain package has no such record.
+    spit(folder / "plain.3mf", make_project());
+    CHECK_FALSE(Json::parse(run_program({"info", folder / "plain.3mf", "--json"}).out).contains("carved"));
+}
+
+TEST_CASE("cli: info reads on where the record of a run is damaged or an extension is not known", "[cli][info]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.off", vase_off());
+    REQUIRE(run_program(carve_line({folder / "vase.off", "--pattern", "cells", "-o", folder / "out.3mf"})).exit_code ==
+            0);
+    // The same package with another model in it than was carved.
+    const std::string bytes = slurp(folder / "out.3mf");
+    const ZipReader zip(bytes, "out.3mf");
+    Parts parts;
+    for (const ZipReader::Entry& entry : zip.entries())
+        parts.emplace_back(entry.name,
+                           entry.name == "Metadata/fretwork/source.off" ? "OFF 0 0 0" : zip.read(entry.name, 1 << 26));
+    spit(folder / "other.3mf", make_zip(parts));
+    const ProgramResult damaged = run_program({"info", folder / "other.3mf", "--json"});
+    CHECK(damaged.exit_code == 0);
+    CHECK_THAT(Json::parse(damaged.out)["carved"]["damaged"].get<std::string>(),
+               Catch::Contains("SHA-256") && Catch::Contains("source.off"));
+    spit(folder / "q.3mf", make_package(make_model(make_tetrahedron(1), "<item objectid=\"1\"/>",
+                                                   "xmlns:q=\"urn:quartz\" requiredextensions=\"q\"")));
+    const ProgramResult unknown = run_program({"info", folder / "q.3mf", "--json"});
+    REQUIRE(unknown.exit_code == 0);
+    const Json info = Json::parse(unknown.out);
+    CHECK(info["package"]["extensions"][0]["required"] == true);
+    CHECK(info["package"]["extensions"][0]["understood"] == false);
+    CHECK_THAT(info["warnings"][0].get<std::string>(), Catch::Contains("urn:quartz"));
 }
 
 }  // namespace

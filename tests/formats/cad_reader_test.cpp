@@ -21,6 +21,7 @@
 #include "core/base/error.h"
 #include "core/mesh/mesh_report.h"
 #include "formats/mesh_file.h"
+#include "formats/part_facts.h"
 #include "formats/read_file.h"
 
 namespace fretwork {
@@ -81,6 +82,34 @@ TEST_CASE("cad: a finer deviation comes closer to a sphere", "[formats][cad]") {
         CHECK(error < 0.5 * last_error);
         last_error = error;
     }
+}
+
+TEST_CASE("cad: a face is told by its area, centre and normal", "[formats][cad][info]") {
+    const MeshFile file = read_cad(brep_of(plate()), CadFormat::kBrep, "plate.brep");
+    const auto value = [](const Facts& facts, std::string_view name) -> std::optional<FactValue> {
+        for (const auto& [key, held] : facts.entries)
+            if (key == name) return held;
+        return {};
+    };
+    int holes = 0, tops = 0;
+    for (const MeshPart& face : file.faces) {
+        const Facts facts = face_facts(file.mesh, face);
+        CHECK(std::get<std::string>(*value(facts, "name")) == face.name);
+        const auto center = std::get<std::vector<double>>(*value(facts, "center_mm"));
+        const double area = std::get<double>(*value(facts, "area_mm2"));
+        const auto normal = value(facts, "mean_normal");
+        if (!normal) {  // the hole
+            ++holes;
+            CHECK(area == Approx(2 * kPi * 4 * 5).epsilon(0.01));
+            CHECK_THAT(center, Catch::Approx(std::vector<double>{10, 15, 2.5}).margin(1e-9));
+        } else if (std::get<std::vector<double>>(*normal)[2] > 0.5) {
+            ++tops;
+            CHECK(area == Approx(600 - kPi * 16).epsilon(0.01));
+            CHECK_THAT(center, Catch::Approx(std::vector<double>{10, 15, 5}).margin(1e-9));
+        }
+    }
+    CHECK(holes == 1);
+    CHECK(tops == 1);
 }
 
 TEST_CASE("cad: faces keep the numbers of the shape's own order", "[formats][cad]") {
