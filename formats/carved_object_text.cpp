@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "core/base/error.h"
 #include "formats/color_channel.h"
@@ -13,7 +14,7 @@
 namespace fretwork {
 namespace {
 
-constexpr std::size_t kItemsPerPiece = 1 << 15;  ///< vertices or triangles packed at once
+constexpr std::size_t kItemsPerPiece = 1 << 13;  ///< vertices or triangles packed at once
 
 void append_attribute(std::string& out, std::string_view name_and_quote, std::uint64_t value) {
     out += name_and_quote;
@@ -25,10 +26,17 @@ std::string number_attribute(std::string_view name, std::uint64_t value) {
     return xml_attribute(name, std::to_string(value));
 }
 
+/// In the order of arrays, but as one number to compare.
+std::uint32_t rank_of(const Rgb8& color) {
+    return std::uint32_t{color[0]} << 16 | std::uint32_t{color[1]} << 8 | color[2];
+}
+
 /// Different colours in ascending order.
 std::vector<Rgb8> palette_of(std::span<const Rgb8> colors) {
-    std::vector<Rgb8> palette(colors.begin(), colors.end());
-    std::ranges::sort(palette);
+    std::vector<Rgb8> palette;
+    // Neighbours mostly have one colour.
+    std::ranges::unique_copy(colors, std::back_inserter(palette));
+    std::ranges::sort(palette, {}, rank_of);
     palette.erase(std::unique(palette.begin(), palette.end()), palette.end());
     return palette;
 }
@@ -165,17 +173,21 @@ std::string CarvedObjectText::triangles(const ModelDialect& dialect, std::size_t
     const bool painted = paint.format != PaintFormat::kNone && !paint.extruders.empty();
     const std::string paint_name =
         paint.format == PaintFormat::kPrusa ? dialect.slicer + "mmu_segmentation" : "paint_color";
-    std::string xml;
+    std::string xml, properties;
     xml.reserve(112 * (end - begin));
     for (std::size_t t = begin; t < end; ++t) {
         append_attribute(xml, open, triangles[t][0]);
         append_attribute(xml, " v2=\"", triangles[t][1]);
         append_attribute(xml, " v3=\"", triangles[t][2]);
         if (colored()) {
-            const auto color = std::ranges::lower_bound(palette_, object_.triangle_colors[t]);
-            const auto index = static_cast<std::uint64_t>(color - palette_.begin());
-            xml += group;
-            for (const std::string_view corner : {" p1=\"", " p2=\"", " p3=\""}) append_attribute(xml, corner, index);
+            if (t == begin || object_.triangle_colors[t] != object_.triangle_colors[t - 1]) {
+                const auto color = std::ranges::lower_bound(palette_, rank_of(object_.triangle_colors[t]), {}, rank_of);
+                const auto index = static_cast<std::uint64_t>(color - palette_.begin());
+                properties = group;
+                for (const std::string_view corner : {" p1=\"", " p2=\"", " p3=\""})
+                    append_attribute(properties, corner, index);
+            }
+            xml += properties;
         }
         if (painted) xml += xml_attribute(paint_name, paint_state_text(paint.extruders[t]));
         xml += "/>\n";

@@ -45,7 +45,7 @@ struct CarvedPackage : PackageRecord {
 /// Coordinates are rounded to floats and printed so that they read back exactly.
 ///
 /// The bytes depend on the arguments alone.
-/// Cost  2 M triangles take about a second per core; memory is the packed size plus a few MB.
+/// Cost  2 M triangles take two to three seconds of all cores together; memory is the packed size twice.
 /// \throws InvalidInput  no object; see check_mesh_to_write; data whose number differs from the voxels;
 ///                       a grid of over 1024 cells along an axis; a metadata name without a known prefix.
 /// \throws Cancelled

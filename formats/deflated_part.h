@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/base/run_control.h"
 
@@ -11,14 +12,16 @@ namespace fretwork {
 
 /// Raw deflate data with what a ZIP record says about it.
 struct DeflatedPart {
-    std::string bytes;
-    std::uint64_t size = 0;   ///< unpacked
-    std::uint32_t crc32 = 0;  ///< of the unpacked bytes
+    std::vector<std::string> blocks;  ///< to be joined; apart, so that each can go as soon as it has been written
+    std::uint64_t size = 0;           ///< unpacked
+    std::uint32_t crc32 = 0;          ///< of the unpacked bytes
+
+    [[nodiscard]] std::uint64_t packed_size() const;
 };
 
 /// A part as it lies in an archive.
 struct PackedPart {
-    DeflatedPart data;    ///< with the bytes as they are when `stored`
+    DeflatedPart data;    ///< with the blocks as they are when `stored`
     bool stored = false;  ///< not packed at all
 };
 

@@ -50,6 +50,9 @@ class Build {
     /// An object that the build refers to, directly or not.
     [[nodiscard]] const Object& object(const ObjectKey& key) const { return models_.at(key.part).objects.at(key.id); }
 
+    /// The same, to take its mesh out where nothing else is going to ask for it.
+    [[nodiscard]] Object& object(const ObjectKey& key) { return models_.at(key.part).objects.at(key.id); }
+
     /// Hands over what the meshes are held in; the triangles of `object` are empty then.
     [[nodiscard]] Object take(const ObjectKey& key) { return std::move(models_.at(key.part).objects.at(key.id)); }
 

@@ -48,7 +48,7 @@ class PartWriter {
     void put(std::string_view name, const std::string& bytes) {
         put(name, deflate_pieces(1, [&](std::size_t) { return bytes; }));
     }
-    void put_stored(std::string_view name, std::string bytes) { put_packed(name, {{std::move(bytes), 0, 0}, true}); }
+    void put_stored(std::string_view name, std::string bytes) { put_packed(name, {{{std::move(bytes)}, 0, 0}, true}); }
 
     /// A part as it was; empty when there is none.
     [[nodiscard]] std::string text_of(std::string_view name) const {

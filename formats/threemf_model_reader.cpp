@@ -9,6 +9,7 @@
 #include "formats/color_channel.h"
 #include "formats/mesh_data.h"
 #include "formats/parse_error.h"
+#include "formats/plain_elements.h"
 #include "formats/text_scanner.h"
 #include "formats/threemf_names.h"
 #include "formats/threemf_values.h"
@@ -52,6 +53,33 @@ class ModelReader::Handler : public XmlHandler {
           materials_(xml_, options.read_part) {}
 
     XmlReader& xml() { return xml_; }
+
+    /// Vertices or triangles may come next.
+    [[nodiscard]] bool within_plain() const {
+        return !within_.empty() && (within_.back() == Within::kVertices || within_.back() == Within::kTriangles) &&
+               plain_children_ && xml_.at_content();
+    }
+
+    /// Takes those that stand plainly off the front of the text. \return how much that is
+    std::size_t take_plain(std::string_view text) {
+        if (!within_plain()) return 0;
+        PlainElements elements(text);
+        std::size_t lines = 0;
+        const auto count_lines = [&] {
+            xml_.skip_lines(elements.lines() - lines);
+            lines = elements.lines();
+        };
+        if (within_.back() == Within::kVertices) {
+            while (const auto vertex = elements.vertex()) push_vertex(*vertex);
+        } else {
+            while (const auto triangle = elements.triangle()) {
+                count_lines();
+                push_triangle(*triangle);
+            }
+        }
+        count_lines();
+        return text.size() - elements.rest().size();
+    }
 
     Model take() {
         if (!model_seen_) xml_.fail("no model", "a <model> of the core namespace");
@@ -123,6 +151,7 @@ class ModelReader::Handler : public XmlHandler {
                 if (e.name == "components") return Within::kComponents;
                 break;
             case Within::kMesh:
+                plain_children_ = e.prefix.empty();
                 if (e.name == "vertices") return Within::kVertices;
                 if (e.name == "triangles") return Within::kTriangles;
                 break;
@@ -234,33 +263,49 @@ class ModelReader::Handler : public XmlHandler {
         if (const auto volume = e.find("volumeid", kVolumetric))
             object_->volume = static_cast<ResourceId>(values_.whole(*volume, "volumeid", 1, kMaxId));
         colored_ = false;
+        last_group_ = 0;
         return Within::kMesh;
     }
 
     Within add_vertex(const XmlElement& e) {
-        auto& positions = object_->mesh.positions_mm;
-        if (positions.size() % kStopEvery == 0) run_.throw_if_stopped();
-        positions.emplace_back(values_.number(values_.need(e, "x"), "x"), values_.number(values_.need(e, "y"), "y"),
-                               values_.number(values_.need(e, "z"), "z"));
+        push_vertex({values_.number(values_.need(e, "x"), "x"), values_.number(values_.need(e, "y"), "y"),
+                     values_.number(values_.need(e, "z"), "z")});
         return Within::kLeaf;
     }
 
+    void push_vertex(const Vec3& p) {
+        auto& positions = object_->mesh.positions_mm;
+        if (positions.size() % kStopEvery == 0) run_.throw_if_stopped();
+        positions.push_back(p);
+    }
+
     Within add_triangle(const XmlElement& e) {
-        TriangleMesh& mesh = object_->mesh;
-        if (mesh.triangles.size() % kStopEvery == 0) run_.throw_if_stopped();
-        Triangle triangle{};
+        TriangleElement triangle;
         static constexpr std::array<std::string_view, 3> kCorners = {"v1", "v2", "v3"};
         for (std::size_t k = 0; k < 3; ++k)
-            triangle[k] =
-                static_cast<std::uint32_t>(values_.whole(values_.need(e, kCorners[k]), kCorners[k], 0, 0xFFFFFFFE));
-        // Forbidden by the format, yet common; such a triangle has no area and nothing to carve.
-        if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
-            ++degenerate_triangles_;
-            return Within::kLeaf;
+            triangle.corners[k] = static_cast<std::uint32_t>(
+                values_.whole(values_.need(e, kCorners[k]), kCorners[k], 0, kMaxVertexIndex));
+        if (e.find("pid")) triangle.group = values_.id(e, "pid");
+        for (const std::string_view name : {"p1", "p2", "p3"}) {
+            const auto value = e.find(name);
+            if (!value) break;
+            triangle.property[triangle.properties++] = values_.whole(*value, name, 0, kMaxId);
         }
-        mesh.triangles.push_back(triangle);
-        add_triangle_color(triangle_color(e));
+        push_triangle(triangle);
         return Within::kLeaf;
+    }
+
+    void push_triangle(const TriangleElement& triangle) {
+        TriangleMesh& mesh = object_->mesh;
+        if (mesh.triangles.size() % kStopEvery == 0) run_.throw_if_stopped();
+        const Triangle& v = triangle.corners;
+        // Forbidden by the format, yet common; such a triangle has no area and nothing to carve.
+        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
+            ++degenerate_triangles_;
+            return;
+        }
+        mesh.triangles.push_back(v);
+        add_triangle_color(triangle_color(triangle));
     }
 
     void add_triangle_color(const std::optional<Rgb8>& color) {
@@ -273,16 +318,20 @@ class ModelReader::Handler : public XmlHandler {
     }
 
     /// The object's own colour where the triangle has none.
-    std::optional<Rgb8> triangle_color(const XmlElement& e) {
-        const auto p1 = e.find("p1"), p2 = e.find("p2"), p3 = e.find("p3");
-        const ResourceId group = e.find("pid") ? values_.id(e, "pid") : object_group_;
-        if (group == 0 || !p1) return default_color_;
-        const std::int64_t first = values_.whole(*p1, "p1", 0, kMaxId);
-        const bool shaded = p2 && p3;
-        const auto color = materials_.color_of(group, {first, shaded ? values_.whole(*p2, "p2", 0, kMaxId) : first,
-                                                       shaded ? values_.whole(*p3, "p3", 0, kMaxId) : first});
-        if (!color) ++skipped_properties_;
-        return color ? color : default_color_;
+    std::optional<Rgb8> triangle_color(const TriangleElement& triangle) {
+        const ResourceId group = triangle.group != 0 ? triangle.group : object_group_;
+        if (group == 0 || triangle.properties == 0) return default_color_;
+        const auto& [p1, p2, p3] = triangle.property;
+        const std::array<std::int64_t, 3> corners = {p1, triangle.properties == 3 ? p2 : p1,
+                                                     triangle.properties == 3 ? p3 : p1};
+        // Neighbours mostly have one colour.
+        if (group != last_group_ || corners != last_corners_) {
+            last_color_ = materials_.color_of(group, corners);
+            last_group_ = group;
+            last_corners_ = corners;
+        }
+        if (!last_color_) ++skipped_properties_;
+        return last_color_ ? last_color_ : default_color_;
     }
 
     /// Triangles may come before the vertices in the text, so indices are judged at the end.
@@ -370,6 +419,10 @@ class ModelReader::Handler : public XmlHandler {
     ResourceId object_group_ = 0;
     std::optional<Rgb8> default_color_;
     bool colored_ = false;
+    ResourceId last_group_ = 0;  ///< of the last triangle with properties, what it named and what that looks like
+    std::array<std::int64_t, 3> last_corners_{};
+    std::optional<Rgb8> last_color_;
+    bool plain_children_ = false;  ///< elements without a prefix are of the core namespace
     bool model_seen_ = false;
     std::size_t sheets_wanted_ = 0;
     std::size_t skipped_properties_ = 0;
@@ -380,11 +433,54 @@ ModelReader::ModelReader(std::string_view source, const ModelReadOptions& option
     : handler_(std::make_unique<Handler>(source, options, run)) {}
 ModelReader::~ModelReader() = default;
 
+namespace {
+
+/// A tag that goes on longer than this is no plain one.
+constexpr std::size_t kMostKept = 1 << 12;
+
+/// Where the first tag ends behind which plain elements may begin; 0 where there is none.
+std::size_t end_of_opening(std::string_view text) {
+    constexpr std::string_view kEnd = "s>";
+    for (std::size_t at = text.find(kEnd); at != text.npos; at = text.find(kEnd, at + 1)) {
+        const std::string_view until = text.substr(0, at + kEnd.size());
+        if (until.ends_with("<vertices>") || until.ends_with("<triangles>")) return until.size();
+    }
+    return 0;
+}
+
+/// How much of a text the XML reader is to be given before plain elements are looked for anew; 0 where the text ends
+/// within a tag. A `>` that does not end one only has it asked sooner or later. \param one_tag  plain elements may
+/// follow right behind the next tag
+std::size_t next_piece(std::string_view text, bool one_tag) {
+    if (one_tag) return text.find('>') + 1;
+    const std::size_t opening = end_of_opening(text);
+    return opening > 0 ? opening : text.rfind('>') + 1;
+}
+
+}  // namespace
+
 void ModelReader::feed(std::string_view block) {
-    handler_->xml().feed(block);
+    std::string joined;
+    std::string_view text = block;
+    if (!rest_.empty()) {
+        joined = std::move(rest_).append(block);
+        rest_.clear();
+        text = joined;
+    }
+    while (!text.empty()) {
+        const std::size_t plain = handler_->take_plain(text);
+        text.remove_prefix(plain);
+        std::size_t piece = next_piece(text, handler_->within_plain());
+        if (piece == 0 && text.size() < kMostKept) break;
+        if (piece == 0) piece = text.size();
+        handler_->xml().feed(text.substr(0, piece));
+        text.remove_prefix(piece);
+    }
+    rest_ = text;
 }
 
 Model ModelReader::finish() {
+    if (!rest_.empty()) handler_->xml().feed(rest_);
     handler_->xml().finish();
     return handler_->take();
 }

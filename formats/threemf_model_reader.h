@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "core/base/run_control.h"
@@ -15,7 +16,8 @@ struct ModelReadOptions {
     ReadPart read_part;            ///< for textures; may be empty: they have no colour then
 };
 
-/// Takes the part block by block. Understands core, materials, production (paths) and
+/// Takes the part block by block; vertices and triangles that stand plainly are taken past the XML reader, several
+/// times faster. Understands core, materials, production (paths) and
 /// image stacks of the volumetric extension; ignores what it does not know, unless the model requires
 /// it.
 class ModelReader {
@@ -34,7 +36,9 @@ class ModelReader {
 
   private:
     class Handler;
+
     std::unique_ptr<Handler> handler_;
+    std::string rest_;  ///< a tag that is not whole yet
 };
 
 /// A whole part in memory.

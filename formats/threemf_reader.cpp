@@ -15,10 +15,11 @@ using threemf::ObjectKey;
 /// The meshes of the build in one.
 class BuildFlattener {
   public:
-    BuildFlattener(const Build& build, const std::map<ObjectKey, MeshToWrite>& replaced, const RunControl& run)
+    BuildFlattener(Build& build, const std::map<ObjectKey, MeshToWrite>& replaced, const RunControl& run)
         : build_(build), replaced_(replaced), run_(run), mm_(millimeters_per(build.root().unit)) {}
 
     MeshFile flatten() {
+        for (const Instance& item : build_.root().items) count_placements(Build::key_of(build_.root_part(), item));
         for (const Instance& item : build_.root().items) {
             const auto first = static_cast<std::uint32_t>(file_.mesh.triangles.size());
             const ObjectKey key = Build::key_of(build_.root_part(), item);
@@ -37,6 +38,12 @@ class BuildFlattener {
     }
 
   private:
+    void count_placements(const ObjectKey& key) {
+        ++left_to_place_[key];
+        for (const Instance& component : build_.object(key).components)
+            count_placements(Build::key_of(key.part, component));
+    }
+
     void place(const ObjectKey& key, const Eigen::Affine3d& transform) {
         run_.throw_if_stopped();
         const Object& object = build_.object(key);
@@ -45,23 +52,42 @@ class BuildFlattener {
             return;
         }
         const auto other = replaced_.find(key);
-        if (other != replaced_.end())
+        const bool last = --left_to_place_.at(key) == 0;
+        if (other != replaced_.end()) {
             append(key, other->second, transform * Eigen::Scaling(1.0 / mm_));
-        else if (!object.mesh.triangles.empty())
-            append(key, {object.mesh, object.triangle_colors}, transform);
+        } else if (!object.mesh.triangles.empty()) {
+            if (last && file_.mesh.positions_mm.empty())
+                take_over(key, transform);
+            else
+                append(key, {object.mesh, object.triangle_colors}, transform);
+            if (last) build_.object(key).mesh = {};
+        }
         for (const Instance& component : object.components)
             place(Build::key_of(key.part, component), transform * component.transform);
+    }
+
+    [[nodiscard]] Vec3 placed(const ObjectKey& key, const Vec3& p, const Eigen::Affine3d& transform) const {
+        const Vec3 result = transform * p;
+        if (!(result.cwiseAbs().maxCoeff() <= kMaxCoordinate))
+            build_.fail(key.part, build_.object(key).line, "a placed coordinate over 1e9 in size", "a smaller one");
+        return result;
+    }
+
+    /// Puts the mesh of an object in an empty file, without a second copy of it.
+    /// \param transform  into the unit of the root model
+    void take_over(const ObjectKey& key, const Eigen::Affine3d& transform) {
+        Object& object = build_.object(key);
+        file_.mesh = std::move(object.mesh);
+        file_.triangle_colors = std::move(object.triangle_colors);
+        for (Vec3& p : file_.mesh.positions_mm) p = placed(key, p, transform);
+        if (transform.linear().determinant() < 0.0)
+            for (Triangle& t : file_.mesh.triangles) std::swap(t[1], t[2]);
     }
 
     /// \param transform  into the unit of the root model
     void append(const ObjectKey& key, const MeshToWrite& input, const Eigen::Affine3d& transform) {
         const auto base = static_cast<std::uint32_t>(file_.mesh.positions_mm.size());
-        for (const Vec3& p : input.mesh.positions_mm) {
-            const Vec3 placed = transform * p;
-            if (!(placed.cwiseAbs().maxCoeff() <= kMaxCoordinate))
-                build_.fail(key.part, build_.object(key).line, "a placed coordinate over 1e9 in size", "a smaller one");
-            file_.mesh.positions_mm.push_back(placed);
-        }
+        for (const Vec3& p : input.mesh.positions_mm) file_.mesh.positions_mm.push_back(placed(key, p, transform));
         const bool mirrored = transform.linear().determinant() < 0.0;
         for (Triangle t : input.mesh.triangles) {
             if (mirrored) std::swap(t[1], t[2]);
@@ -73,10 +99,11 @@ class BuildFlattener {
         colors.insert(colors.end(), input.triangle_colors.begin(), input.triangle_colors.end());
     }
 
-    const Build& build_;
+    Build& build_;
     const std::map<ObjectKey, MeshToWrite>& replaced_;
     const RunControl& run_;
     double mm_;
+    std::map<ObjectKey, std::size_t> left_to_place_;
     std::size_t left_out_ = 0;
     MeshFile file_;
 };
@@ -91,7 +118,10 @@ MeshFile read_threemf(std::string_view bytes, std::string_view source, const Run
 MeshFile read_threemf_with(std::string_view bytes, std::string_view source,
                            const std::map<threemf::ObjectKey, MeshToWrite>& replaced, const RunControl& run,
                            const ThreemfReadOptions& options) {
-    const Build build(bytes, source, options, run);
+    return flatten_build(Build(bytes, source, options, run), replaced, run);
+}
+
+MeshFile flatten_build(Build build, const std::map<ObjectKey, MeshToWrite>& replaced, const RunControl& run) {
     return BuildFlattener(build, replaced, run).flatten();
 }
 

@@ -27,4 +27,8 @@ MeshFile read_threemf_with(std::string_view bytes, std::string_view source,
                            const std::map<threemf::ObjectKey, MeshToWrite>& replaced, const RunControl& run = {},
                            const ThreemfReadOptions& options = {});
 
+/// The same of a build that has been read; its meshes are handed over where they are shown once.
+MeshFile flatten_build(threemf::Build build, const std::map<threemf::ObjectKey, MeshToWrite>& replaced,
+                       const RunControl& run = {});
+
 }  // namespace fretwork

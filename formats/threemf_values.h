@@ -10,6 +10,7 @@
 namespace fretwork::threemf {
 
 inline constexpr std::int64_t kMaxId = 0x7FFFFFFF;
+inline constexpr std::int64_t kMaxVertexIndex = 0xFFFFFFFE;
 
 /// Every function throws InvalidInput through the reader, which names source and line.
 class ThreemfValues {

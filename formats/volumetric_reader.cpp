@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <map>
 
+#include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "formats/parse_error.h"
 #include "formats/png_reader.h"
+#include "formats/threemf_build.h"
 #include "formats/threemf_package.h"
+#include "formats/threemf_reader.h"
+#include "formats/voxel_stack.h"
 
 namespace fretwork {
 namespace {
@@ -15,26 +21,11 @@ namespace {
 using threemf::TileStyle;
 
 constexpr std::uint64_t kMaxSheetBytes = 64 << 20;
+constexpr std::size_t kMaxShownSamples = std::size_t{1} << 30;
+/// Of sheets that are unpacked together, which bounds the memory whatever the number of threads.
+constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 21;
 
-/// Pixels of all sheets, sheet by sheet, row 0 at the highest y.
-struct Stack {
-    std::int64_t columns = 0, rows = 0, sheets = 0;
-    std::size_t channels = 0;
-    double full = 255.0;  ///< the sample that stands for one
-    std::vector<std::uint16_t> samples;
-
-    /// Channel 0..2 red, green, blue, 3 alpha, in [0, 1]. Grey stands for all three colours; a missing
-    /// alpha is one.
-    [[nodiscard]] double at(std::int64_t column, std::int64_t row, std::int64_t sheet, std::size_t channel) const {
-        const bool has_alpha = channels == 2 || channels == 4;
-        if (channel == 3 && !has_alpha) return 1.0;
-        const std::size_t c = channel == 3 ? channels - 1 : channels < 3 ? 0 : channel;
-        const auto pixel = static_cast<std::size_t>((sheet * rows + row) * columns + column);
-        return samples[pixel * channels + c] / full;
-    }
-};
-
-std::int64_t tiled(std::int64_t i, std::int64_t count, TileStyle style) {
+std::int64_t cell_of(std::int64_t i, std::int64_t count, TileStyle style) {
     switch (style) {
         case TileStyle::kWrap:
             return ((i % count) + count) % count;
@@ -49,7 +40,7 @@ std::int64_t tiled(std::int64_t i, std::int64_t count, TileStyle style) {
 }
 
 struct Channel {
-    const Stack* stack = nullptr;
+    const VoxelStack* stack = nullptr;
     threemf::ImageFunction function;
     Eigen::Affine3d to_unit_cube = Eigen::Affine3d::Identity();
     std::size_t first = 0;  ///< channel; a vector takes three
@@ -59,7 +50,7 @@ struct Channel {
         uvw[1] = 1.0 - uvw[1];  // Row 0 lies at V = 1.
         // A point far outside is nearest to the same cell as one a million cells away.
         for (int k = 0; k < 3; ++k) uvw[k] = std::clamp(uvw[k], -1e6, 1e6);
-        const std::array<std::int64_t, 3> count = {stack->columns, stack->rows, stack->sheets};
+        const std::array<std::int64_t, 3> count = {stack->columns(), stack->rows(), stack->sheets()};
         const double raw = function.nearest ? nearest(uvw, count, channel) : linear(uvw, count, channel);
         return raw * function.scale + function.offset;
     }
@@ -67,8 +58,8 @@ struct Channel {
   private:
     [[nodiscard]] double cell(const std::array<std::int64_t, 3>& i, const std::array<std::int64_t, 3>& count,
                               std::size_t channel) const {
-        return stack->at(tiled(i[0], count[0], function.tile[0]), tiled(i[1], count[1], function.tile[1]),
-                         tiled(i[2], count[2], function.tile[2]), channel);
+        return stack->at(cell_of(i[0], count[0], function.tile[0]), cell_of(i[1], count[1], function.tile[1]),
+                         cell_of(i[2], count[2], function.tile[2]), channel);
     }
 
     [[nodiscard]] double nearest(const Vec3& uvw, const std::array<std::int64_t, 3>& count, std::size_t channel) const {
@@ -108,7 +99,7 @@ struct VolumetricObject::Impl {
     std::string name;
     std::optional<Channel> color;
     std::map<std::string, Channel, std::less<>> properties;
-    std::vector<std::shared_ptr<const Stack>> stacks;  ///< what the channels point to
+    std::vector<std::shared_ptr<const VoxelStack>> stacks;  ///< what the channels point to
 };
 
 VolumetricObject::VolumetricObject(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -142,12 +133,9 @@ std::optional<double> VolumetricObject::property(std::string_view name, const Ve
 
 class VolumetricLoader {
   public:
-    VolumetricLoader(std::string_view bytes, std::string_view source, std::size_t max_samples, const RunControl& run)
-        : source_(source),
-          max_samples_(max_samples),
-          run_(run),
-          package_(bytes, source),
-          model_(package_.read_model(package_.model_part(), /*ignore_required=*/false, run)) {}
+    VolumetricLoader(const threemf::Package& package, const threemf::Model& model, std::string_view source,
+                     std::size_t max_samples, const RunControl& run)
+        : package_(package), model_(model), source_(source), max_samples_(max_samples), run_(run) {}
 
     std::vector<VolumetricObject> load() {
         std::vector<VolumetricObject> objects;
@@ -156,6 +144,8 @@ class VolumetricLoader {
             auto impl = std::make_unique<VolumetricObject::Impl>();
             impl->name = object.name;
             for (const threemf::VolumeProperty& property : find(model_.volumes, object.volume, "volumedata")) {
+                if (!property.name.empty() && property.name.find(':') == std::string::npos)
+                    fail("property " + in_quotes(property.name), "a name with the prefix of whoever defines it");
                 const Channel channel = channel_of(property);
                 if (property.name.empty()) {
                     impl->color = channel;
@@ -196,52 +186,83 @@ class VolumetricLoader {
         return channel;
     }
 
-    const Stack* stack_of(threemf::ResourceId id) {
+    const VoxelStack* stack_of(threemf::ResourceId id) {
         if (const auto known = stacks_.find(id); known != stacks_.end()) return known->second.get();
         const threemf::Image3d& image = find(model_.images, id, "image3d");
-        auto stack = std::make_shared<Stack>();
-        stack->columns = image.columns;
-        stack->rows = image.rows;
-        stack->sheets = static_cast<std::int64_t>(image.sheets.size());
-        for (const std::string& path : image.sheets) append_sheet(*stack, path);
+        auto stack = std::make_shared<VoxelStack>();
+        const auto pixels = static_cast<std::size_t>(image.columns * image.rows);
+        const std::size_t batch = std::max<std::size_t>(1, kPixelsAtOnce / pixels);
+        for (std::size_t begin = 0; begin < image.sheets.size(); begin += batch)
+            append_sheets(*stack, image, begin, std::min(image.sheets.size(), begin + batch));
         return (stacks_[id] = std::move(stack)).get();
     }
 
-    void append_sheet(Stack& stack, const std::string& path) {
-        run_.throw_if_stopped();
-        if (!package_.contains(path)) fail("no sheet " + in_quotes(path), "one");
-        const RawPng png = read_raw_png(package_.read_part(path, kMaxSheetBytes), source_ + ": " + path,
-                                        {.max_side_px = 1024, .max_pixels = 1 << 20});
-        if (png.width != stack.columns || png.height != stack.rows)
-            fail("sheet " + in_quotes(path) + " of " + std::to_string(png.width) + " x " + std::to_string(png.height),
-                 std::to_string(stack.columns) + " x " + std::to_string(stack.rows));
-        const double full = png.bits == 16 ? 65535.0 : 255.0;
-        if (stack.samples.empty()) {
-            stack.channels = static_cast<std::size_t>(png.channels);
-            stack.full = full;
-            const auto cells = static_cast<std::size_t>(stack.columns * stack.rows * stack.sheets);
-            samples_ += cells * stack.channels;
-            if (samples_ > max_samples_)
-                fail(std::to_string(samples_) + " samples", "at most " + std::to_string(max_samples_));
-            stack.samples.reserve(cells * stack.channels);
+    /// Unpacks some sheets at once, each on any thread, and adds them in order.
+    void append_sheets(VoxelStack& stack, const threemf::Image3d& image, std::size_t begin, std::size_t end) {
+        std::vector<std::string> files(end - begin);
+        for (std::size_t i = 0; i < files.size(); ++i) {
+            const std::string& path = image.sheets[begin + i];
+            if (!package_.contains(path)) fail("no sheet " + in_quotes(path), "one");
+            files[i] = package_.read_part(path, kMaxSheetBytes);
         }
-        if (static_cast<std::size_t>(png.channels) != stack.channels || full != stack.full)
-            fail("sheet " + in_quotes(path) + " of another layout than the first", "one layout per stack");
-        stack.samples.insert(stack.samples.end(), png.samples.begin(), png.samples.end());
+        std::vector<TiledSheet> sheets(files.size());
+        std::vector<std::exception_ptr> broken(files.size());
+        parallel_for(files.size(), 1, [&](std::size_t i) {
+            run_.throw_if_stopped();
+            try {
+                sheets[i] = tiled(read_raw_png(files[i], source_ + ": " + image.sheets[begin + i],
+                                               {.max_side_px = 1024, .max_pixels = 1 << 20}));
+            } catch (const InvalidInput&) {
+                broken[i] = std::current_exception();
+            }
+        });
+        for (std::size_t i = 0; i < sheets.size(); ++i) {
+            if (broken[i]) std::rethrow_exception(broken[i]);
+            append_sheet(stack, image, sheets[i], image.sheets[begin + i]);
+        }
     }
 
+    void append_sheet(VoxelStack& stack, const threemf::Image3d& image, const TiledSheet& sheet,
+                      const std::string& path) {
+        if (sheet.width != image.columns || sheet.height != image.rows)
+            fail("sheet " + in_quotes(path) + " of " + std::to_string(sheet.width) + " x " +
+                     std::to_string(sheet.height),
+                 std::to_string(image.columns) + " x " + std::to_string(image.rows));
+        if (!stack.takes(sheet))
+            fail("sheet " + in_quotes(path) + " of another layout than the first", "one layout per stack");
+        samples_ += sheet.samples.size();
+        shown_samples_ +=
+            static_cast<std::size_t>(sheet.width) * static_cast<std::size_t>(sheet.height) * sheet.channels;
+        if (samples_ > max_samples_ || shown_samples_ > kMaxShownSamples)
+            fail("over " + std::to_string(max_samples_) + " samples to be stored or " +
+                     std::to_string(kMaxShownSamples) + " to be unpacked",
+                 "fewer");
+        stack.add(sheet);
+    }
+
+    const threemf::Package& package_;
+    const threemf::Model& model_;
     std::string source_;
     std::size_t max_samples_;
     const RunControl& run_;
-    threemf::Package package_;
-    threemf::Model model_;
-    std::map<threemf::ResourceId, std::shared_ptr<const Stack>> stacks_;
+    std::map<threemf::ResourceId, std::shared_ptr<const VoxelStack>> stacks_;
     std::size_t samples_ = 0;
+    std::size_t shown_samples_ = 0;  ///< with those of tiles that are held as one pixel
 };
 
 std::vector<VolumetricObject> read_volumetric_threemf(std::string_view bytes, std::string_view source,
                                                       std::size_t max_samples, const RunControl& run) {
-    return VolumetricLoader(bytes, source, max_samples, run).load();
+    const threemf::Package package(bytes, source);
+    const threemf::Model model = package.read_model(package.model_part(), /*ignore_required=*/false, run);
+    return VolumetricLoader(package, model, source, max_samples, run).load();
+}
+
+VolumetricFile read_threemf_with_volumes(std::string_view bytes, std::string_view source, const RunControl& run) {
+    threemf::Build build(bytes, source, {}, run);
+    VolumetricFile file;
+    file.objects = VolumetricLoader(build.package(), build.root(), source, kMaxStoredSamples, run).load();
+    file.mesh = flatten_build(std::move(build), {}, run);
+    return file;
 }
 
 }  // namespace fretwork

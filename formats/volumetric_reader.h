@@ -9,6 +9,7 @@
 
 #include "core/base/run_control.h"
 #include "core/base/vec.h"
+#include "formats/mesh_data.h"
 
 namespace fretwork {
 
@@ -38,12 +39,24 @@ class VolumetricObject {
     std::unique_ptr<Impl> impl_;
 };
 
+inline constexpr std::size_t kMaxStoredSamples = std::size_t{1} << 26;
+
 /// Objects with volumetric data, in order of their ids.
 /// \throws InvalidInput  see `threemf_reader.h`; also a sheet that is missing or whose size differs from
-///     its stack, a number of sheets other than announced, an unknown channel or reference, stacks over
-///     `max_samples` in all (two bytes each; the default keeps hostile files under 200 MB).
+///     its stack, a number of sheets other than announced, an unknown channel or reference; stacks that hold over
+///     `max_samples` in all (two bytes each; the default keeps hostile files under 200 MB), where 8 x 8 pixels of one
+///     value count as one, or over 2^30 with all pixels counted.
 std::vector<VolumetricObject> read_volumetric_threemf(std::string_view bytes, std::string_view source,
-                                                      std::size_t max_samples = std::size_t{1} << 26,
+                                                      std::size_t max_samples = kMaxStoredSamples,
                                                       const RunControl& run = {});
+
+struct VolumetricFile {
+    MeshFile mesh;
+    std::vector<VolumetricObject> objects;
+};
+
+/// What `read_threemf` and `read_volumetric_threemf` tell of a package, for the price of reading it once.
+/// \throws InvalidInput  as they do. \throws Cancelled
+VolumetricFile read_threemf_with_volumes(std::string_view bytes, std::string_view source, const RunControl& run = {});
 
 }  // namespace fretwork

@@ -68,17 +68,17 @@ struct XmlReader::Impl {
             if (size > kMaxValueBytes) fail("an attribute value over 64 KiB", "a shorter one");
             attributes.push_back({view(entry[2]), view(entry[0]), {reinterpret_cast<const char*>(entry[3]), size}});
         }
-        handler.start({plain.space, plain.name, attributes});
+        handler.start({plain.space, plain.name, plain.prefix, attributes});
     }
 
     static Impl& self(void* user) { return *static_cast<Impl*>(user); }
 
-    static void on_start(void* user, const xmlChar* name, const xmlChar*, const xmlChar* space, int declared_count,
-                         const xmlChar** declared, int count, int, const xmlChar** values) {
+    static void on_start(void* user, const xmlChar* name, const xmlChar* prefix, const xmlChar* space,
+                         int declared_count, const xmlChar** declared, int count, int, const xmlChar** values) {
         Impl& me = self(user);
         me.declared = declared;
         me.declared_count = declared_count;
-        me.guarded([&] { me.start({view(space), view(name), {}}, count, values); });
+        me.guarded([&] { me.start({view(space), view(name), view(prefix), {}}, count, values); });
         me.declared_count = 0;
     }
     static void on_end(void* user, const xmlChar*, const xmlChar*, const xmlChar*) {
@@ -158,6 +158,16 @@ void XmlReader::finish() {
 
 std::size_t XmlReader::line() const {
     return impl_->parser->input == nullptr ? 0 : static_cast<std::size_t>(impl_->parser->input->line);
+}
+
+bool XmlReader::at_content() const {
+    const xmlParserInput* input = impl_->parser->input;
+    return impl_->depth > 0 && input != nullptr && input->cur == input->end && input->buf != nullptr &&
+           input->buf->encoder == nullptr && impl_->parser->instate == XML_PARSER_CONTENT;
+}
+
+void XmlReader::skip_lines(std::size_t count) {
+    impl_->parser->input->line += static_cast<int>(count);
 }
 
 std::string XmlReader::namespace_of(std::string_view prefix) const {

@@ -20,6 +20,7 @@ struct XmlAttribute {
 struct XmlElement {
     std::string_view space;
     std::string_view name;
+    std::string_view prefix;
     std::span<const XmlAttribute> attributes;
 
     /// Value of an attribute without a prefix (or of a namespace).
@@ -55,6 +56,13 @@ class XmlReader {
 
     /// Line of what is being handed out.
     [[nodiscard]] std::size_t line() const;
+
+    /// Whether all that was fed has been handed out and what comes next is content of the open element, in the bytes
+    /// of UTF-8. A caller that knows what to do with elements in there may keep them from the reader.
+    [[nodiscard]] bool at_content() const;
+
+    /// Tells of lines that were kept from the reader.
+    void skip_lines(std::size_t count);
 
     /// URI of a prefix on the element being handed out; empty if it has none there.
     [[nodiscard]] std::string namespace_of(std::string_view prefix) const;

@@ -4,14 +4,20 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <exception>
+#include <mutex>
 #include <unordered_map>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "formats/parse_error.h"
 
 namespace fretwork {
 namespace {
+
+constexpr std::size_t kBlockBytes = 1 << 18;
 
 struct DiscardZip {
     void operator()(zip_t* zip) const { zip_discard(zip); }
@@ -52,6 +58,7 @@ struct ZipReader::Impl {
     std::vector<Entry> entries;
     std::unordered_map<std::string, std::size_t> by_name;  ///< folded name -> position in `entries`
     std::vector<zip_uint64_t> index;                       ///< of each entry within the archive
+    mutable std::mutex one_at_a_time;                      ///< all entries share the archive's place of reading
 
     [[noreturn]] void fail(std::string_view entry, std::string_view found, std::string_view expected) const {
         fail_parse(source, entry.empty() ? std::string("archive") : "entry " + in_quotes(entry), found, expected);
@@ -122,22 +129,63 @@ struct ZipReader::Impl {
         return found->second;
     }
 
-    void read_entry(std::size_t position, const std::function<void(std::string_view)>& take) const {
-        const Entry& entry = entries[position];
-        const std::unique_ptr<zip_file_t, CloseZipFile> file(zip_fopen_index(zip.get(), index[position], 0));
-        if (!file) fail(entry.name, "data that cannot be opened", "a sound entry");
-        std::vector<char> block(1 << 18);
-        std::uint64_t done = 0;
-        while (true) {
-            const zip_int64_t got = zip_fread(file.get(), block.data(), block.size());
+    /// Unpacks an entry from its beginning.
+    class EntryStream {
+      public:
+        EntryStream(const Impl& impl, std::size_t position) : impl_(impl), entry_(impl.entries[position]) {
+            const std::lock_guard<std::mutex> lock(impl_.one_at_a_time);
+            file_.reset(zip_fopen_index(impl_.zip.get(), impl_.index[position], 0));
+            if (!file_) impl_.fail(entry_.name, "data that cannot be opened", "a sound entry");
+        }
+        ~EntryStream() {
+            const std::lock_guard<std::mutex> lock(impl_.one_at_a_time);
+            file_.reset();
+        }
+        EntryStream(const EntryStream&) = delete;
+        EntryStream& operator=(const EntryStream&) = delete;
+
+        /// What comes next, within `buffer`; nothing at the end.
+        std::string_view next(std::vector<char>& buffer) {
+            const std::lock_guard<std::mutex> lock(impl_.one_at_a_time);
+            const zip_int64_t got = zip_fread(file_.get(), buffer.data(), buffer.size());
             if (got < 0)
-                fail(entry.name, std::string("broken data (") + zip_file_strerror(file.get()) + ")", "a sound entry");
-            done += static_cast<std::uint64_t>(got);
-            if (done > entry.size || (got == 0 && done != entry.size))
-                fail(entry.name, std::to_string(done) + " bytes",
-                     "the " + std::to_string(entry.size) + " it announces");
-            if (got == 0) return;
-            take({block.data(), static_cast<std::size_t>(got)});
+                impl_.fail(entry_.name, std::string("broken data (") + zip_file_strerror(file_.get()) + ")",
+                           "a sound entry");
+            done_ += static_cast<std::uint64_t>(got);
+            if (done_ > entry_.size || (got == 0 && done_ != entry_.size))
+                impl_.fail(entry_.name, std::to_string(done_) + " bytes",
+                           "the " + std::to_string(entry_.size) + " it announces");
+            return {buffer.data(), static_cast<std::size_t>(got)};
+        }
+
+      private:
+        const Impl& impl_;
+        const Entry& entry_;
+        std::unique_ptr<zip_file_t, CloseZipFile> file_;
+        std::uint64_t done_ = 0;
+    };
+
+    void read_entry(std::size_t position, const std::function<void(std::string_view)>& take) const {
+        EntryStream stream(*this, position);
+        std::array<std::vector<char>, 2> buffers = {std::vector<char>(kBlockBytes), std::vector<char>(kBlockBytes)};
+        std::string_view block = stream.next(buffers[0]);
+        for (std::size_t turn = 1; !block.empty(); ++turn) {
+            std::string_view following;
+            std::exception_ptr broken;
+            parallel_for(2, 1, [&](std::size_t job) {
+                if (job == 0) {
+                    take(block);
+                    return;
+                }
+                try {
+                    following = stream.next(buffers[turn % 2]);
+                } catch (const InvalidInput&) {
+                    broken = std::current_exception();
+                }
+            });
+            // What is wrong with the text so far comes before what is wrong further on.
+            if (broken) std::rethrow_exception(broken);
+            block = following;
         }
     }
 
@@ -145,6 +193,7 @@ struct ZipReader::Impl {
         const Entry& entry = entries[position];
         zip_stat_t stat;
         zip_stat_init(&stat);
+        const std::lock_guard<std::mutex> lock(one_at_a_time);
         const std::unique_ptr<zip_file_t, CloseZipFile> file(
             zip_fopen_index(zip.get(), index[position], ZIP_FL_COMPRESSED));
         if (!file || zip_stat_index(zip.get(), index[position], 0, &stat) != 0)
@@ -153,9 +202,9 @@ struct ZipReader::Impl {
         part.stored = stat.comp_method == ZIP_CM_STORE;
         part.data.size = stat.size;
         part.data.crc32 = stat.crc;
-        part.data.bytes.resize(stat.comp_size);
-        for (std::size_t done = 0; done < part.data.bytes.size();) {
-            const zip_int64_t got = zip_fread(file.get(), part.data.bytes.data() + done, stat.comp_size - done);
+        std::string& bytes = part.data.blocks.emplace_back(stat.comp_size, '\0');
+        for (std::size_t done = 0; done < bytes.size();) {
+            const zip_int64_t got = zip_fread(file.get(), bytes.data() + done, stat.comp_size - done);
             if (got <= 0) fail(entry.name, std::to_string(done) + " packed bytes", std::to_string(stat.comp_size));
             done += static_cast<std::size_t>(got);
         }

@@ -49,7 +49,7 @@ class ZipReader {
     [[nodiscard]] PackedPart read_packed(std::string_view name) const;
 
     /// Hands the part to `take` block by block, checked as it goes; the checksum is known to be right
-    /// when the call returns.
+    /// when the call returns. The next block is unpacked on another thread meanwhile; `take` may read other parts.
     void read_blocks(std::string_view name, const std::function<void(std::string_view block)>& take) const;
 
   private:

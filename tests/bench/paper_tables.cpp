@@ -2,7 +2,6 @@
 // program, file to file, in a process of its own. Markdown on stdout or into a document's section.
 // The paper's figures come from hardware that it does not state; compare ratios between rows, and runs on one machine.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "child_process.h"
 #include "formats/read_file.h"
 #include "markdown.h"
+#include "scratch_folder.h"
 
 namespace {
 
@@ -79,24 +79,6 @@ struct Options {
     bool large = true;
 };
 
-/// A folder for this run's files; goes with the object.
-class ScratchFolder {
-  public:
-    ScratchFolder() : path_(fs::temp_directory_path() / fmt::format("fretwork-tables-{}", getpid())) {
-        fs::create_directories(path_);
-    }
-    ~ScratchFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    [[nodiscard]] const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
-
 class Runner {
   public:
     explicit Runner(const Options& options) : options_(options) {}
@@ -125,7 +107,7 @@ class Runner {
 
   private:
     const Options& options_;
-    ScratchFolder scratch_;
+    ScratchFolder scratch_{"tables"};
 };
 
 std::string seconds_text(const std::optional<double>& s) {

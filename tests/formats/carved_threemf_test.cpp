@@ -167,6 +167,10 @@ TEST_CASE("carved 3MF: the model part keeps to what slicers and lib3mf need", "[
                         Catch::Contains("tilestylev=\"clamp\"") && Catch::Contains("tilestylew=\"clamp\""));
     CHECK_THAT(xml, Catch::Contains("<v:property name=\"fw:solid\" required=\"true\""));
     CHECK_THAT(xml, Catch::Contains("rowcount=\"5\" columncount=\"7\" sheetcount=\"6\""));
+    // Twelve numbers with single blanks between them, in each of the three that there are.
+    const std::regex transform(" transform=\"(-?[0-9.e+-]+ ){11}-?[0-9.e+-]+\"");
+    CHECK(std::distance(std::sregex_iterator(xml.begin(), xml.end(), transform), {}) == 3);
+    CHECK_THAT(xml, Catch::Contains("<v:color functionid=\"3\" channel=\"color\" transform="));
     CHECK_THAT(xml, Catch::Contains("<metadata name=\"Title\">Vase, 2 \xC2\xB5m</metadata>") &&
                         Catch::Contains("<metadata name=\"Designer\">x &lt; y</metadata>") &&
                         Catch::Contains("<metadata name=\"fw:seed\">42</metadata>"));
@@ -203,12 +207,22 @@ TEST_CASE("carved 3MF: every sheet is named by a relationship and every part has
         CHECK_THAT(types, Catch::Contains("Extension=\"" + extension + "\""));
         if (entry.name.find("sheet") != std::string::npos) {
             ++sheets;
-            CHECK_THAT(relations, Catch::Contains("Target=\"/" + entry.name + "\""));
+            CHECK_THAT(relations, Catch::Contains("Target=\"/" + entry.name +
+                                                  "\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/"
+                                                  "3dtexture\""));
         } else if (extension != "rels") {
             CHECK_THAT(roots, Catch::Contains("Target=\"/" + entry.name + "\""));
         }
     }
     CHECK(sheets == 12);
+    CHECK_THAT(types, Catch::Contains("Extension=\"png\" ContentType=\"image/png\"") &&
+                          Catch::Contains("Extension=\"model\" "
+                                          "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\""));
+    CHECK_THAT(roots, Catch::Contains("Target=\"/3D/3dmodel.model\" "
+                                      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"") &&
+                          Catch::Contains("Target=\"/Metadata/thumbnail.png\" "
+                                          "Type=\"http://schemas.openxmlformats.org/package/2006/relationships/"
+                                          "metadata/thumbnail\""));
     CHECK(zip.read("Metadata/fretwork.toml", 1 << 20) == "[shell]\nthickness_mm = 2.0\n");
 }
 

@@ -233,8 +233,8 @@ TEST_CASE("mesh files: broken ones are refused with place, found and expected", 
 TEST_CASE("mesh files: cut off anywhere, a file is refused or read in part, and nothing else", "[formats][errors]") {
     const TriangleMesh mesh = make_box(Vec3(0, 0, 0), Vec3(1, 2, 3));
     const std::vector<Rgb8> colors(mesh.triangles.size(), Rgb8{1, 2, 3});
-    for (const MeshFormat format :
-         {MeshFormat::kStl, MeshFormat::kPly, MeshFormat::kOff, MeshFormat::kObj, MeshFormat::kThreemf}) {
+    for (const MeshFormat format : {MeshFormat::kStl, MeshFormat::kPly, MeshFormat::kOff, MeshFormat::kObj,
+                                    MeshFormat::kThreemf, MeshFormat::kAmf}) {
         const std::string whole = write_mesh({mesh, colors}, format);
         CAPTURE(static_cast<int>(format));
         for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -243,7 +243,8 @@ TEST_CASE("mesh files: cut off anywhere, a file is refused or read in part, and 
             // Text does not show that its last number or line is cut; the formats that name their counts do
             // up to there.
             const bool may_read = format == MeshFormat::kObj ||
-                                  (format == MeshFormat::kOff && size > whole.rfind('\n', whole.size() - 2));
+                                  (format == MeshFormat::kOff && size > whole.rfind('\n', whole.size() - 2)) ||
+                                  (format == MeshFormat::kAmf && size > whole.rfind('>'));
             try {
                 const MeshFile file = read(format, cut);
                 REQUIRE(may_read);
@@ -267,8 +268,8 @@ TEST_CASE("mesh files: reading stops when asked", "[formats][cancel]") {
     source.request_stop();
     const RunControl run({}, source.get_token());
     const TriangleMesh mesh = make_square(1.0);
-    for (const MeshFormat format :
-         {MeshFormat::kStl, MeshFormat::kPly, MeshFormat::kOff, MeshFormat::kObj, MeshFormat::kThreemf}) {
+    for (const MeshFormat format : {MeshFormat::kStl, MeshFormat::kPly, MeshFormat::kOff, MeshFormat::kObj,
+                                    MeshFormat::kThreemf, MeshFormat::kAmf}) {
         const std::string bytes = write_mesh({mesh}, format);
         CHECK_THROWS_AS(read_mesh(bytes, format, "m", {.unit = LengthUnit::kMillimeter}, run), Cancelled);
     }

@@ -96,6 +96,10 @@ TEST_CASE("mesh files: colours of triangles survive where the format has them", 
     const std::vector<Rgb8> colors = random_colors(seed, mesh.triangles.size());
     const MeshFile file = read_mesh(write_mesh({mesh, colors}, format), format, "memory");
     CHECK(file.triangle_colors == colors);
+    // Neighbours that are alike but for one channel, in runs of two.
+    std::vector<Rgb8> close = colors;
+    for (std::size_t t = 0; t < close.size(); ++t) close[t] = {7, 7, static_cast<std::uint8_t>(t / 2)};
+    CHECK(read_mesh(write_mesh({mesh, close}, format), format, "memory").triangle_colors == close);
 }
 
 TEST_CASE("mesh files: STL corners at one place become one vertex, minus zero included", "[formats]") {

@@ -134,6 +134,21 @@ std::string make_project(const ProjectGaps& gaps) {
          {"Metadata/Slic3r_PE.config", "; layer_height = 0.2\n"}});
 }
 
+std::string make_volumetric(const Volumetric& volumetric) {
+    Parts parts;
+    std::string resources = "<v:image3d id=\"2\"><v:imagestack " + volumetric.stack + ">";
+    for (std::size_t k = 0; k < volumetric.sheets.size(); ++k) {
+        const std::string path = "3D/v/" + std::to_string(k) + ".png";
+        resources += "<v:imagesheet path=\"/" + path + "\"/>";
+        if (!volumetric.sheets[k].empty()) parts.emplace_back(path, volumetric.sheets[k]);
+    }
+    std::string object = make_tetrahedron(1);
+    object.replace(object.find("<mesh>"), 6, "<mesh " + volumetric.mesh + ">");
+    resources += "</v:imagestack></v:image3d><v:functionfromimage3d id=\"3\" image3did=\"2\" " + volumetric.function +
+                 "/><v:volumedata id=\"4\">" + volumetric.volume + "</v:volumedata>" + object;
+    return make_package(make_model(resources, "<item objectid=\"1\"/>", volumetric.model), parts);
+}
+
 std::string patched(std::string bytes, std::string_view from, std::string_view to) {
     if (from.size() != to.size()) throw std::logic_error("patched: lengths differ");
     std::size_t count = 0;

@@ -47,6 +47,18 @@ struct ProjectGaps {
 /// and "far" (1 of /3D/Objects/other.model). Its prefix m means something else, and its ids end at 61.
 std::string make_project(const ProjectGaps& gaps = {});
 
+/// A tetrahedron with voxel data, and what may be wrong with them.
+struct Volumetric {
+    std::vector<std::string> sheets;  ///< PNG; an empty one is missing from the package
+    std::string stack;                ///< attributes of the image stack, which must agree with the sheets
+    std::string function;             ///< further attributes of the function
+    /// Content of the volume data.
+    std::string volume = "<v:property name=\"fw:solid\" required=\"true\" functionid=\"3\" channel=\"red\"/>";
+    std::string mesh = "v:volumeid=\"4\"";  ///< attributes of the mesh
+    std::string model;                      ///< attributes of the model
+};
+std::string make_volumetric(const Volumetric& volumetric);
+
 /// Replaces every occurrence; both have the same length. For names within finished archives.
 std::string patched(std::string bytes, std::string_view from, std::string_view to);
 
