@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <memory>
 
@@ -16,6 +15,7 @@
 #include "core/mesh/mesh_report.h"
 #include "formats/facts_text.h"
 #include "formats/image_file.h"
+#include "formats/lower_case.h"
 #include "formats/part_facts.h"
 #include "formats/threemf_contents.h"
 #include "formats/threemf_facts.h"
@@ -30,13 +30,6 @@ struct InfoOptions {
     bool json = false;
     RunOptions run;
 };
-
-std::string extension_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 int print(const Facts& facts, bool as_json) {
     fmt::print("{}", as_json ? facts_json(facts) : facts_lines(facts));
@@ -64,12 +57,19 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& file
     return {files.begin(), files.end()};
 }
 
+/// The mesh of a 3MF; what else is in it goes to `facts`.
+MeshFile package_of(const ModelBytes& model, Facts& facts, const RunControl& run) {
+    threemf::Build build(model.bytes, model.name, kReadAll, run);
+    add_package_facts(threemf_contents(build, model.bytes, model.name, run), facts);
+    return flatten_build(std::move(build), {}, run);
+}
+
 int mesh_info(const InfoOptions& options, const RunControl& run) {
     const RunControl reading = run.slice(0.0, 0.3);
     const ModelBytes model = read_bytes(options.model, reading);
     const bool threemf = model.format == MeshFormat::kThreemf;
-    const MeshFile file = threemf ? read_threemf(model.bytes, model.name, reading, kReadAll)
-                                  : read_model(model, options.model.cad, reading);
+    Facts package;
+    const MeshFile file = threemf ? package_of(model, package, reading) : read_model(model, options.model.cad, reading);
     const MeshReport report = report_mesh(file.mesh, CountSelfIntersections::kYes, run.slice(0.3, 1.0));
     const Vec3 size = report.max_mm - report.min_mm;
     Facts facts;
@@ -88,7 +88,7 @@ int mesh_info(const InfoOptions& options, const RunControl& run) {
     if (!file.read_beside.empty()) facts.add("read_beside", names_of(file.read_beside));
     if (threemf) {
         add_objects(model, facts, run);
-        add_package_facts(read_threemf_contents(model.bytes, model.name, run), facts);
+        facts.entries.insert(facts.entries.end(), package.entries.begin(), package.entries.end());
         add_carved_facts(model, facts);
     }
     facts.add("warnings", file.warnings);
@@ -127,7 +127,7 @@ int spec_info(const InfoOptions& options) {
 }
 
 int info_command(const InfoOptions& options, Interrupt& interrupt) {
-    const std::string extension = extension_of(options.model.path);
+    const std::string extension = lower_case(std::filesystem::path(options.model.path).extension().string());
     constexpr std::array pictures = {".png", ".jpg", ".jpeg"};
     if (options.model.format.empty() && extension == ".toml") return spec_info(options);
     if (options.model.format.empty() && std::ranges::count(pictures, extension) > 0) return picture_info(options);

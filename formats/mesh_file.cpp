@@ -1,7 +1,6 @@
 #include "formats/mesh_file.h"
 
 #include <array>
-#include <cctype>
 #include <utility>
 
 #include "core/base/error.h"
@@ -11,6 +10,7 @@
 #include "formats/cad_reader.h"
 #include "formats/carved_threemf_writer.h"
 #include "formats/glb_writer.h"
+#include "formats/lower_case.h"
 #include "formats/obj_materials.h"
 #include "formats/obj_reader.h"
 #include "formats/obj_writer.h"
@@ -69,8 +69,7 @@ std::string write_threemf(const MeshToWrite& input) {
 }  // namespace
 
 MeshFormat mesh_format_from_name(std::string_view name) {
-    std::string lower(name.substr(name.starts_with('.') ? 1 : 0));
-    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string lower = lower_case(name.substr(name.starts_with('.') ? 1 : 0));
     std::string known;
     for (const auto& [word, format] : kFormats) {
         if (word == lower) return format;

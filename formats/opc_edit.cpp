@@ -1,10 +1,10 @@
 #include "formats/opc_edit.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 
+#include "formats/lower_case.h"
 #include "formats/opc_parts.h"
 #include "formats/package_record.h"
 #include "formats/xml_spans.h"
@@ -12,13 +12,6 @@
 
 namespace fretwork {
 namespace {
-
-/// Names in packages are told apart without regard to case.
-std::string folded(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return lower;
-}
 
 std::string with_slash(const std::string& target) {
     return target.starts_with('/') ? target : "/" + target;
@@ -67,23 +60,32 @@ class FlatXml {
     XmlTag last_;
 };
 
+/// What a [Content_Types].xml says. Names in packages are told apart without regard to case: all are in lower case.
+struct ContentTypes {
+    std::map<std::string, std::string> by_extension, by_part;
+
+    explicit ContentTypes(const FlatXml& document) {
+        document.each("Default", [&](auto& values, auto&) {
+            by_extension.emplace(lower_case(values["Extension"]), values["ContentType"]);
+        });
+        document.each("Override", [&](auto& values, auto&) {
+            by_part.emplace(lower_case(values["PartName"]), values["ContentType"]);
+        });
+    }
+};
+
 }  // namespace
 
 std::string with_content_types(std::string_view xml, std::span<const std::string> paths) {
     const FlatXml document(xml);
     if (document.empty()) return std::string(xml);
-    std::map<std::string, std::string> by_extension;
-    std::set<std::string> overridden;
-    document.each("Default", [&](auto& values, auto&) {
-        by_extension.emplace(folded(values["Extension"]), values["ContentType"]);
-    });
-    document.each("Override", [&](auto& values, auto&) { overridden.insert(folded(values["PartName"])); });
+    ContentTypes types(document);
     std::string more;
     for (const std::string& path : paths) {
-        const std::string extension = folded(extension_of(path));
+        const std::string extension = lower_case(extension_of(path));
         const std::string type(content_type_of(extension));
-        if (overridden.contains(folded(path))) continue;
-        const auto [known, added] = by_extension.emplace(extension, type);
+        if (types.by_part.contains(lower_case(path))) continue;
+        const auto [known, added] = types.by_extension.emplace(extension, type);
         if (added)
             more += " <" + document.prefix() + "Default" + xml_attribute("Extension", extension) +
                     xml_attribute("ContentType", type) + "/>\n";
@@ -94,6 +96,20 @@ std::string with_content_types(std::string_view xml, std::span<const std::string
     return document.with_children(more);
 }
 
+std::vector<std::string> content_types_of(std::string_view xml, std::span<const std::string> paths) {
+    const FlatXml document(xml);
+    const ContentTypes types(document);
+    std::vector<std::string> found;
+    for (const std::string& path : paths) {
+        const auto own = types.by_part.find(lower_case(path));
+        const auto type = types.by_extension.find(lower_case(extension_of(path)));
+        found.push_back(own != types.by_part.end()         ? own->second
+                        : type != types.by_extension.end() ? type->second
+                                                           : std::string());
+    }
+    return found;
+}
+
 std::string with_relations(std::string_view xml, std::span<const Relation> relations) {
     const FlatXml document(xml);
     if (document.empty()) return relationships_xml({relations.begin(), relations.end()});
@@ -101,12 +117,12 @@ std::string with_relations(std::string_view xml, std::span<const Relation> relat
     std::set<std::pair<std::string, std::string>> known;
     document.each("Relationship", [&](auto& values, auto&) {
         ids.insert(values["Id"]);
-        known.emplace(folded(with_slash(values["Target"])), values["Type"]);
+        known.emplace(lower_case(with_slash(values["Target"])), values["Type"]);
     });
     std::string more;
     std::size_t number = 0;
     for (const auto& [target, type] : relations) {
-        if (known.contains({folded(target), std::string(type)})) continue;
+        if (known.contains({lower_case(target), std::string(type)})) continue;
         std::string id;
         do {
             id = "fretwork" + std::to_string(number++);

@@ -13,6 +13,9 @@ namespace fretwork {
 /// \param paths  with a leading slash
 std::string with_content_types(std::string_view xml, std::span<const std::string> paths);
 
+/// The types that it gives to these paths, with a leading slash; empty where it gives none.
+std::vector<std::string> content_types_of(std::string_view xml, std::span<const std::string> paths);
+
 /// A target with its leading slash, and the type of the relationship.
 using Relation = std::pair<std::string, std::string_view>;
 

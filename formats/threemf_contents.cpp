@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 
 #include "core/base/error.h"
 #include "formats/length_unit.h"
 #include "formats/opc_edit.h"
-#include "formats/package_record.h"
 #include "formats/slicer_paint.h"
 #include "formats/text_scanner.h"
 #include "formats/threemf_materials.h"
@@ -134,34 +132,6 @@ class ModelScanner : public XmlHandler {
     int group_depth_ = 0;
 };
 
-/// [Content_Types].xml
-class ContentTypes : public XmlHandler {
-  public:
-    void start(const XmlElement& e) override {
-        const std::string type(e.find("ContentType").value_or(""));
-        if (e.name == "Default") by_extension_.emplace(lower(e.find("Extension").value_or("")), type);
-        if (e.name == "Override")
-            by_part_.emplace(lower(threemf::without_slash(e.find("PartName").value_or(""))), type);
-    }
-    void end() override {}
-    void text(std::string_view) override {}
-
-    [[nodiscard]] std::string of(std::string_view part) const {
-        if (const auto own = by_part_.find(lower(part)); own != by_part_.end()) return own->second;
-        const auto type = by_extension_.find(lower(extension_of(part)));
-        return type == by_extension_.end() ? "" : type->second;
-    }
-
-  private:
-    static std::string lower(std::string_view text) {
-        std::string result(text);
-        for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        return result;
-    }
-
-    std::map<std::string, std::string, std::less<>> by_extension_, by_part_;
-};
-
 /// Sizes follow from the transform of the property, which takes the object into the unit cube of the stack.
 VoxelPropertyInfo voxel_property(const Model& model, const threemf::VolumeProperty& property, double unit_mm) {
     VoxelPropertyInfo info;
@@ -190,32 +160,34 @@ void add_voxel_data(const std::string& part, const Model& model, ThreemfContents
     }
 }
 
-void add_parts(const ZipReader& zip, const Build& build, std::string_view source, ThreemfContents& contents) {
+void add_parts(const ZipReader& zip, const Build& build, ThreemfContents& contents) {
     std::set<std::string_view> sheets;
     for (const auto& [part, model] : build.models())
         for (const auto& [id, image] : model.images)
             for (const std::string& sheet : image.sheets) sheets.insert(threemf::without_slash(sheet));
-    ContentTypes types;
-    if (zip.contains(threemf::kContentTypesPart))
-        read_xml(zip.read(threemf::kContentTypesPart, kMaxTextBytes),
-                 std::string(source) + ": " + std::string(threemf::kContentTypesPart), types);
+    std::vector<std::string> paths;
     for (const ZipReader::Entry& entry : zip.entries()) {
-        if (sheets.contains(entry.name))
+        if (sheets.contains(entry.name)) {
             ++contents.image_sheets;
-        else
-            contents.parts.push_back({entry.name, types.of(entry.name), entry.size});
+            continue;
+        }
+        contents.parts.push_back({entry.name, "", entry.size});
+        paths.push_back("/" + entry.name);
     }
+    if (!zip.contains(threemf::kContentTypesPart)) return;
+    const std::vector<std::string> types = content_types_of(zip.read(threemf::kContentTypesPart, kMaxTextBytes), paths);
+    for (std::size_t i = 0; i < types.size(); ++i) contents.parts[i].content_type = types[i];
 }
 
 }  // namespace
 
-ThreemfContents read_threemf_contents(std::string_view bytes, std::string_view source, const RunControl& run) {
-    const Build build(bytes, source, {.ignore_required = true}, run);
+ThreemfContents threemf_contents(const Build& build, std::string_view bytes, std::string_view source,
+                                 const RunControl& run) {
     const ZipReader zip(bytes, source);
     ThreemfContents contents;
     contents.model_part = build.root_part();
     contents.metadata = build.root().metadata;
-    add_parts(zip, build, source, contents);
+    add_parts(zip, build, contents);
     if (zip.contains(threemf::kRootRelationsPart))
         contents.thumbnail = threemf::without_slash(
             target_of_relation(zip.read(threemf::kRootRelationsPart, kMaxTextBytes), threemf::kThumbnailRelation));

@@ -74,8 +74,10 @@ struct ThreemfContents {
     std::string thumbnail;  ///< part that holds it; empty: none
 };
 
-/// Looks at every model part that the build refers to; required extensions that are not known are listed, not refused.
-/// Takes about twice as long as reading. \throws InvalidInput  see read_threemf. \throws Cancelled
-ThreemfContents read_threemf_contents(std::string_view bytes, std::string_view source, const RunControl& run = {});
+/// Looks once more at every model part that the build refers to; extensions that are not known are listed.
+/// \param build  of the same bytes
+/// \throws InvalidInput  a part that cannot be read. \throws Cancelled
+ThreemfContents threemf_contents(const threemf::Build& build, std::string_view bytes, std::string_view source,
+                                 const RunControl& run = {});
 
 }  // namespace fretwork

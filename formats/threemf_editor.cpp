@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <deque>
 #include <map>
 
 #include "core/base/error.h"
+#include "formats/lower_case.h"
 #include "formats/opc_edit.h"
 #include "formats/opc_parts.h"
 #include "formats/parse_error.h"
@@ -33,12 +33,6 @@ struct EditedPart {
     ModelLayout layout;  ///< refers to `xml`
 };
 
-std::string folded(std::string_view name) {
-    std::string lower(name);
-    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return lower;
-}
-
 /// What becomes of the parts of an archive: some are replaced, the rest is copied, more follow.
 class PartWriter {
   public:
@@ -58,7 +52,7 @@ class PartWriter {
     std::string finish() {
         ZipWriter zip;
         for (const ZipReader::Entry& entry : from_.entries()) {
-            const auto changed = changed_.find(folded(entry.name));
+            const auto changed = changed_.find(lower_case(entry.name));
             if (changed == changed_.end()) {
                 zip.add_packed(entry.name, from_.read_packed(entry.name));
                 continue;
@@ -67,7 +61,7 @@ class PartWriter {
             changed->second.written = true;
         }
         for (const std::string& name : order_)
-            if (Changed& changed = changed_.at(folded(name)); !changed.written)
+            if (Changed& changed = changed_.at(lower_case(name)); !changed.written)
                 zip.add_packed(name, std::move(changed.part));
         return zip.finish();
     }
@@ -80,7 +74,7 @@ class PartWriter {
 
     void put_packed(std::string_view name, PackedPart part) {
         order_.emplace_back(name);
-        changed_[folded(name)].part = std::move(part);
+        changed_[lower_case(name)].part = std::move(part);
     }
 
     const ZipReader& from_;
@@ -160,7 +154,7 @@ struct ThreemfEditor::Impl {
             if (number > 0 || !may_be_empty) suffix = std::to_string(std::max<std::size_t>(number, 1));
             ++number;
             const bool taken = std::ranges::any_of(zip.entries(), [&](const ZipReader::Entry& entry) {
-                const std::string name = folded(entry.name);
+                const std::string name = lower_case(entry.name);
                 return name.starts_with("3d/volumetric/voxels" + suffix + "/") ||
                        name.starts_with("3d/volumetric/reinforced" + suffix + "/");
             });
@@ -215,7 +209,7 @@ class EditRun {
         }
         std::string roots = writer_.text_of(threemf::kRootRelationsPart);
         if (!edit_.record.thumbnail_png.empty()) {
-            const bool is_png = folded(package_thumbnail).ends_with(".png");
+            const bool is_png = lower_case(package_thumbnail).ends_with(".png");
             const std::string path = is_png ? package_thumbnail : "/Metadata/thumbnail.png";
             if (package_thumbnail.empty())
                 relations.emplace_back(path, threemf::kThumbnailRelation);

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <exception>
 #include <mutex>
 #include <unordered_map>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "formats/lower_case.h"
 #include "formats/parse_error.h"
 
 namespace fretwork {
@@ -25,12 +25,6 @@ struct DiscardZip {
 struct CloseZipFile {
     void operator()(zip_file_t* file) const { zip_fclose(file); }
 };
-
-std::string folded(std::string_view name) {
-    std::string lower(name);
-    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return lower;
-}
 
 /// What is wrong with a name, or nothing.
 std::string_view fault_of_name(std::string_view name) {
@@ -56,7 +50,7 @@ struct ZipReader::Impl {
     ZipLimits limits;
     std::unique_ptr<zip_t, DiscardZip> zip;
     std::vector<Entry> entries;
-    std::unordered_map<std::string, std::size_t> by_name;  ///< folded name -> position in `entries`
+    std::unordered_map<std::string, std::size_t> by_name;  ///< name in lower case -> position in `entries`
     std::vector<zip_uint64_t> index;                       ///< of each entry within the archive
     mutable std::mutex one_at_a_time;                      ///< all entries share the archive's place of reading
 
@@ -91,7 +85,7 @@ struct ZipReader::Impl {
             check(stat, i);
             total += stat.size;
             if (std::string_view(stat.name).back() == '/') continue;
-            if (!by_name.emplace(folded(stat.name), entries.size()).second)
+            if (!by_name.emplace(lower_case(stat.name), entries.size()).second)
                 fail(stat.name, "a second entry of this name", "one entry per name");
             entries.push_back({stat.name, stat.size});
             index.push_back(i);
@@ -124,7 +118,7 @@ struct ZipReader::Impl {
     }
 
     [[nodiscard]] std::size_t find(std::string_view name) const {
-        const auto found = by_name.find(folded(name));
+        const auto found = by_name.find(lower_case(name));
         if (found == by_name.end()) fail(name, "no such entry", "one");
         return found->second;
     }
@@ -167,7 +161,8 @@ struct ZipReader::Impl {
 
     void read_entry(std::size_t position, const std::function<void(std::string_view)>& take) const {
         EntryStream stream(*this, position);
-        std::array<std::vector<char>, 2> buffers = {std::vector<char>(kBlockBytes), std::vector<char>(kBlockBytes)};
+        const auto bytes = static_cast<std::size_t>(std::clamp<std::uint64_t>(entries[position].size, 1, kBlockBytes));
+        std::array<std::vector<char>, 2> buffers = {std::vector<char>(bytes), std::vector<char>(bytes)};
         std::string_view block = stream.next(buffers[0]);
         for (std::size_t turn = 1; !block.empty(); ++turn) {
             std::string_view following;
@@ -228,7 +223,7 @@ const std::vector<ZipReader::Entry>& ZipReader::entries() const {
 }
 
 bool ZipReader::contains(std::string_view name) const {
-    return impl_->by_name.contains(folded(name));
+    return impl_->by_name.contains(lower_case(name));
 }
 
 std::string ZipReader::read(std::string_view name, std::uint64_t max_bytes) const {

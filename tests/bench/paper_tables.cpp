@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "child_process.h"
+#include "cli/scratch_folder.h"
 #include "formats/read_file.h"
 #include "markdown.h"
-#include "scratch_folder.h"
 
 namespace {
 
@@ -107,7 +107,7 @@ class Runner {
 
   private:
     const Options& options_;
-    ScratchFolder scratch_{"tables"};
+    cli::ScratchFolder scratch_;
 };
 
 std::string seconds_text(const std::optional<double>& s) {

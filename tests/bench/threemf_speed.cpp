@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "child_process.h"
+#include "cli/scratch_folder.h"
 #include "core/pipeline/memory_use.h"
 #include "formats/carved_threemf_writer.h"
 #include "formats/mesh_file.h"
 #include "formats/read_file.h"
 #include "formats/volumetric_reader.h"
 #include "markdown.h"
-#include "scratch_folder.h"
 #include "speed_model.h"
 #include "support/make_meshes.h"
 #ifdef FRETWORK_LIB3MF
@@ -185,7 +185,7 @@ class Jobs {
     static constexpr const char* kPrusaSlicer = "/usr/bin/prusa-slicer";
 
     const Options& options_;
-    ScratchFolder scratch_{"threemf"};
+    cli::ScratchFolder scratch_;
 };
 
 enum class Direction { kWrite, kRead };

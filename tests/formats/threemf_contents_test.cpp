@@ -24,8 +24,12 @@ using testing::make_tetrahedron;
 
 const std::string kRoot = "3D/3dmodel.model", kOther = "3D/Objects/other.model";
 
+ThreemfContents contents_of(const std::string& package) {
+    return threemf_contents(threemf::Build(package, "p", {.ignore_required = true}, {}), package, "p");
+}
+
 TEST_CASE("3mf contents: parts, metadata and extensions of a project", "[formats][threemf][info]") {
-    const ThreemfContents contents = read_threemf_contents(make_project(), "p");
+    const ThreemfContents contents = contents_of(make_project());
     CHECK(contents.model_part == kRoot);
     CHECK(contents.thumbnail == "Metadata/thumbnail.png");
     REQUIRE(contents.parts.size() == 12);
@@ -50,7 +54,7 @@ TEST_CASE("3mf contents: parts, metadata and extensions of a project", "[formats
 }
 
 TEST_CASE("3mf contents: materials of every model part, paint and what is carried along", "[formats][threemf][info]") {
-    const ThreemfContents contents = read_threemf_contents(make_project(), "p");
+    const ThreemfContents contents = contents_of(make_project());
     REQUIRE(contents.materials.size() == 2);
     CHECK(contents.materials[0].part == kRoot);
     CHECK(contents.materials[0].kind == "basematerials");
@@ -77,10 +81,8 @@ TEST_CASE("3mf contents: materials of every model part, paint and what is carrie
 TEST_CASE("3mf contents: of long lists of colours the number and the first are told", "[formats][threemf][info]") {
     std::string colors;
     for (int i = 0; i < 40; ++i) colors += "<m:color color=\"#0000" + std::to_string(10 + i) + "\"/>";
-    const ThreemfContents contents = read_threemf_contents(
-        make_package(make_model("<m:colorgroup id=\"9\">" + colors + "</m:colorgroup>" + make_tetrahedron(1),
-                                "<item objectid=\"1\"/>")),
-        "p");
+    const ThreemfContents contents = contents_of(make_package(make_model(
+        "<m:colorgroup id=\"9\">" + colors + "</m:colorgroup>" + make_tetrahedron(1), "<item objectid=\"1\"/>")));
     REQUIRE(contents.materials.size() == 1);
     CHECK(contents.materials[0].entries == 40);
     REQUIRE(contents.materials[0].first.size() == 16);
@@ -91,13 +93,13 @@ TEST_CASE("3mf contents: a required extension that is not known is told, not ref
     const std::string package = make_package(make_model(make_tetrahedron(1), "<item objectid=\"1\"/>",
                                                         "xmlns:q=\"urn:quartz\" requiredextensions=\"q m\" "
                                                         "recommendedextensions=\"q\""));
-    const ThreemfContents contents = read_threemf_contents(package, "p");
+    const ThreemfContents contents = contents_of(package);
     REQUIRE(contents.extensions.size() == 2);
     CHECK(contents.extensions[0].space == "urn:quartz");
     CHECK(contents.extensions[0].required);
     CHECK_FALSE(contents.extensions[0].understood);
     CHECK(contents.extensions[1].understood);
-    CHECK_THROWS_AS(read_threemf_contents(package.substr(0, package.size() / 2), "p"), InvalidInput);
+    CHECK_THROWS_AS(contents_of(package.substr(0, package.size() / 2)), InvalidInput);
 }
 
 TEST_CASE("3mf contents: voxel data of a carved object, with the size of its voxels", "[formats][threemf][info]") {
@@ -111,7 +113,7 @@ TEST_CASE("3mf contents: voxel data of a carved object, with the size of its vox
     const VoxelData voxels{shell, solid, reinforced, {}};
     CarvedPackage package;
     package.objects.push_back({box, {}, "lamp", &voxels});
-    const ThreemfContents contents = read_threemf_contents(write_carved_threemf(package), "p");
+    const ThreemfContents contents = contents_of(write_carved_threemf(package));
     CHECK(contents.image_sheets == 4);  // two of colour and solid, two of what was reinforced
     CHECK(std::ranges::none_of(contents.parts, [](const PackagePartInfo& p) { return p.path.ends_with(".png"); }));
     REQUIRE(contents.voxel_data.size() == 1);
@@ -128,7 +130,7 @@ TEST_CASE("3mf contents: voxel data of a carved object, with the size of its vox
 
 TEST_CASE("3mf facts: a program finds all of it under `package`", "[formats][threemf][info]") {
     Facts facts;
-    add_package_facts(read_threemf_contents(make_project(), "p"), facts);
+    add_package_facts(contents_of(make_project()), facts);
     const Json package = Json::parse(facts_json(facts))["package"];
     CHECK(package["parts"].size() == 12);
     CHECK(package["extensions"][1]["understood"] == false);
