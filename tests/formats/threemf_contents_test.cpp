@@ -78,6 +78,18 @@ TEST_CASE("3mf contents: materials of every model part, paint and what is carrie
     CHECK(contents.carried[1].space == "urn:x");
 }
 
+TEST_CASE("3mf contents: what an unknown element holds belongs to it", "[formats][threemf][info]") {
+    const ThreemfContents contents = contents_of(make_package(
+        make_model("<q:box xmlns:q=\"urn:quartz\"><q:lid/><m:colorgroup id=\"9\"><m:color color=\"#000010\"/>"
+                   "</m:colorgroup></q:box><q:box xmlns:q=\"urn:quartz\"/>" +
+                       make_tetrahedron(1),
+                   "<item objectid=\"1\"/>")));
+    CHECK(contents.materials.empty());
+    REQUIRE(contents.carried.size() == 1);
+    CHECK(contents.carried[0].name == "box");
+    CHECK(contents.carried[0].count == 2);
+}
+
 TEST_CASE("3mf contents: of long lists of colours the number and the first are told", "[formats][threemf][info]") {
     std::string colors;
     for (int i = 0; i < 40; ++i) colors += "<m:color color=\"#0000" + std::to_string(10 + i) + "\"/>";
@@ -126,6 +138,25 @@ TEST_CASE("3mf contents: voxel data of a carved object, with the size of its vox
     }
     CHECK(contents.voxel_data[0].properties[0].name == "fw:solid");
     CHECK(contents.voxel_data[0].properties[1].name == "fw:reinforced");
+}
+
+TEST_CASE("3mf contents: voxels of a model in inches are told in millimetres", "[formats][threemf][info]") {
+    std::string object = make_tetrahedron(7);
+    object.insert(object.find("<mesh") + 5, " v:volumeid=\"3\"");
+    const std::string package = make_package(
+        make_model("<v:image3d id=\"1\" name=\"s\"><v:imagestack rowcount=\"5\" columncount=\"4\" sheetcount=\"1\">"
+                   "<v:imagesheet path=\"/3D/s.png\"/></v:imagestack></v:image3d><v:functionfromimage3d id=\"2\" "
+                   "image3did=\"1\"/><v:volumedata id=\"3\"><v:property name=\"fw:solid\" functionid=\"2\" "
+                   "channel=\"A\" transform=\"0.5 0 0 0 0.25 0 0 0 1 0 0 0\"/></v:volumedata>" +
+                       object,
+                   "<item objectid=\"7\"/>", "unit=\"inch\""));
+    const ThreemfContents contents = contents_of(package);
+    REQUIRE(contents.voxel_data.size() == 1);
+    const VoxelPropertyInfo& solid = contents.voxel_data[0].properties.at(0);
+    // 2 x 4 x 1 inches of 4 x 5 x 1 voxels
+    CHECK(solid.voxel_mm[0] == Approx(2 * 25.4 / 4));
+    CHECK(solid.voxel_mm[1] == Approx(4 * 25.4 / 5));
+    CHECK(solid.voxel_mm[2] == Approx(25.4));
 }
 
 TEST_CASE("3mf facts: a program finds all of it under `package`", "[formats][threemf][info]") {

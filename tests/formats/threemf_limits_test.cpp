@@ -195,5 +195,12 @@ TEST_CASE("3mf objects: names that slicers keep beside the model", "[formats][th
     }
 }
 
+TEST_CASE("zip: an entry that announces nothing and holds something is refused", "[formats][zip][hostile]") {
+    constexpr std::size_t kUnpackedSize = 24;
+    const std::string zip = testing::with_central_field(testing::make_zip({{"a", "hello"}}), kUnpackedSize, 0, 4);
+    CHECK_THROWS_AS(ZipReader(zip, "z").read("a", 100), InvalidInput);
+    CHECK(ZipReader(testing::make_zip({{"a", ""}}), "z").read("a", 100).empty());
+}
+
 }  // namespace
 }  // namespace fretwork
