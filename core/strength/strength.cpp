@@ -177,7 +177,7 @@ std::uint64_t memory_for(const VoxelModel& model, std::size_t cases) {
     // Counted from the arrays that live at once, and compared with what runs have taken (tests/bench/strength_bench).
     const std::uint64_t side_by_side = std::min(cases, kSideBySide);
     const std::uint64_t per_node = 12 + 8 + 24 + side_by_side * (24 + 5 * 24 + 12) + 36;
-    const std::uint64_t per_voxel = 12 + 32 + 4 + 1 + 20 + 250;
+    const std::uint64_t per_voxel = 12 + 32 + 4 + 1 + 20 + 400;  // 400: cells, pattern and matrix of the coarse level
     return per_node * model.nodes.size() + per_voxel * model.voxels.size();
 }
 

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -136,7 +137,7 @@ double foresight(const CarveResult& carve, const VoxelModel& model, const std::v
     profile.cases.push_back(gravity_case(shell, -Vec3::UnitZ()));
     BeamModelSettings settings;
     settings.thickness_mm = thickness_mm;
-    const BeamModel beams(shell, carve.solid, graph, beam_half_widths(shell, carve.solid), profile, material, settings);
+    BeamModel beams(shell, carve.solid, graph, beam_half_widths(shell, carve.solid), profile, material, settings);
     std::vector<EdgeState> states;
     for (const AbstractEdge& edge : graph.edges) states.push_back(edge.state);
     const std::vector<double> scores = beams.edge_scores_pa(states);
