@@ -26,7 +26,7 @@ std::vector<Slab> slabs_of(const VoxelModel& model);
 /// Calls `body(slab)` for all even slabs, then for all odd ones.
 template <class Body>
 void for_each_slab(const std::vector<Slab>& slabs, const Body& body) {
-    for (const std::size_t odd : {0, 1})
+    for (std::size_t odd = 0; odd < 2; ++odd)
         parallel_for((slabs.size() + 1 - odd) / 2, 1, [&](std::size_t i) { body(slabs[2 * i + odd]); });
 }
 

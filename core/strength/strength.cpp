@@ -18,18 +18,6 @@ namespace {
 constexpr double kStandardGravity = 9.81;  // m/s^2, as for the beams
 constexpr std::size_t kSideBySide = 3;     // right-hand sides that are solved together
 
-SolveBy solve_by(StrengthSolver solver) {
-    switch (solver) {
-        case StrengthSolver::kFactor:
-            return SolveBy::kFactor;
-        case StrengthSolver::kMultigrid:
-            return SolveBy::kMultigrid;
-        case StrengthSolver::kChoice:
-            break;
-    }
-    return SolveBy::kChoice;
-}
-
 void check(const std::vector<VoxelCase>& cases, const StrengthSettings& settings) {
     if (cases.empty()) throw InvalidSetting("strength: found no load case, expected at least one");
     const auto in_range = [](double value, double low, double high, const char* name) {
@@ -133,7 +121,7 @@ class Analysis {
                             model_.voxels.size(), static_cast<double>(besides) * 1e-9,
                             static_cast<double>(settings_.max_memory_bytes) * 1e-9));
         const VoxelSolver solver(model_, cube_, fixed_nodes(model_, cases_[group[0]].held),
-                                 {solve_by(settings_.solver), settings_.tolerance, settings_.factor_below_voxels,
+                                 {settings_.solver, settings_.tolerance, settings_.factor_below_voxels,
                                   static_cast<std::size_t>(settings_.max_memory_bytes - besides)},
                                  run);
         report_.by_factor = solver.by() == SolveBy::kFactor;

@@ -9,24 +9,18 @@
 #include "core/base/run_control.h"
 #include "core/fem/material.h"
 #include "core/fem/solid_elements.h"
+#include "core/strength/solve_by.h"
 #include "core/strength/voxel_loads.h"
 #include "core/strength/voxel_model.h"
 
 namespace fretwork {
 
-/// How the equations are solved.
-enum class StrengthSolver {
-    kChoice,     ///< by a factor below `factor_below_voxels`
-    kFactor,     ///< one Cholesky factor of the whole
-    kMultigrid,  ///< conjugate gradients, preconditioned by two levels
-};
-
 struct StrengthSettings {
     Material material;
-    double safety_factor = 2.0;   ///< that is asked for; above 0
-    Vec3 layers = Vec3::UnitZ();  ///< direction in which the layers are stacked; any length
-    StrengthSolver solver = StrengthSolver::kChoice;
-    double tolerance = 1e-5;  ///< error in the energy norm; range 1e-12 to 0.1
+    double safety_factor = 2.0;         ///< that is asked for; above 0
+    Vec3 layers = Vec3::UnitZ();        ///< direction in which the layers are stacked; any length
+    SolveBy solver = SolveBy::kChoice;  ///< kChoice: by a factor below `factor_below_voxels`
+    double tolerance = 1e-5;            ///< error in the energy norm; range 1e-12 to 0.1
     std::size_t factor_below_voxels = 10000;
     /// Of what the analysis makes, without the mesh; above 0.
     std::uint64_t max_memory_bytes = std::uint64_t{4} << 30;

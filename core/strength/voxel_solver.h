@@ -8,14 +8,9 @@
 #include "core/base/run_control.h"
 #include "core/strength/coarse_level.h"
 #include "core/strength/fine_level.h"
+#include "core/strength/solve_by.h"
 
 namespace fretwork {
-
-enum class SolveBy {
-    kChoice,     ///< whichever is faster
-    kFactor,     ///< one Cholesky factor of the whole
-    kMultigrid,  ///< conjugate gradients, preconditioned by two levels
-};
 
 struct SolverSettings {
     SolveBy by = SolveBy::kChoice;

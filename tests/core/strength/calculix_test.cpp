@@ -109,7 +109,7 @@ bool has_calculix() {
 void compare(const VoxelModel& model, const VoxelCase& load_case, const Material& material) {
     CAPTURE(model.voxels.size(), load_case.name);
     StrengthSettings settings = settings_with(material);
-    settings.solver = StrengthSolver::kMultigrid;
+    settings.solver = SolveBy::kMultigrid;
     settings.tolerance = 1e-9;
     const StrengthReport report = analyze_strength(model, {load_case}, settings);
     const StrengthCase& ours = report.cases[0];

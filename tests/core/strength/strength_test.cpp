@@ -37,7 +37,7 @@ TEST_CASE("strength: a bar stands under its own weight as the sum says", "[stren
     const Material material = rubbery(100.0, 0.0);
     const std::vector<VoxelCase> cases = {
         {"stands", -Vec3::UnitZ(), {}, held_where(model, [](const VoxelCoord& v) { return v[2] == 0; })}};
-    for (const StrengthSolver solver : {StrengthSolver::kFactor, StrengthSolver::kMultigrid}) {
+    for (const SolveBy solver : {SolveBy::kFactor, SolveBy::kMultigrid}) {
         StrengthSettings settings = settings_with(material);
         settings.solver = solver;
         settings.tolerance = 1e-10;
@@ -97,12 +97,12 @@ TEST_CASE("strength: what pushes twice as hard does twice as much, and supports 
     const std::vector<std::uint8_t> held = held_where(model, [](const VoxelCoord& v) { return v[2] < 4; });
     const std::vector<VoxelCase> cases = {
         {"x", Vec3::UnitX(), {}, held}, {"z", Vec3::UnitZ(), {}, held}, {"both", Vec3(2, 0, -3), {}, held}};
-    for (const StrengthSolver solver : {StrengthSolver::kFactor, StrengthSolver::kMultigrid}) {
+    for (const SolveBy solver : {SolveBy::kFactor, SolveBy::kMultigrid}) {
         StrengthSettings settings = settings_with(rubbery(2000.0, 0.35));
         settings.solver = solver;
         settings.tolerance = 1e-10;
         const StrengthReport report = analyze_strength(model, cases, settings);
-        CHECK(report.by_factor == (solver == StrengthSolver::kFactor));
+        CHECK(report.by_factor == (solver == SolveBy::kFactor));
         double most = 0.0, most_wrong = 0.0;
         for (std::size_t n = 0; n < model.nodes.size(); ++n) {
             const Vec3 sum = 2.0 * report.cases[0].displacement_mm[n] - 3.0 * report.cases[1].displacement_mm[n];
@@ -236,7 +236,7 @@ TEST_CASE("strength: the same report on any number of threads", "[strength]") {
         const ThreadLimit limit(threads);
         const VoxelModel model = make_voxel_model(torus, 0.8);
         StrengthSettings settings = settings_with(rubbery(2000.0, 0.35));
-        settings.solver = StrengthSolver::kMultigrid;
+        settings.solver = SolveBy::kMultigrid;
         reports.push_back(analyze_strength(model, self_weight_cases(model), settings));
     }
     for (const StrengthReport& report : {reports[1], reports[2]}) {
@@ -267,7 +267,7 @@ TEST_CASE("strength: rejects what cannot be analysed, and progress rises to 1", 
     bad = good;
     bad.max_memory_bytes = 1000;
     CHECK_THROWS_AS(analyze_strength(model, cases, bad), MemoryLimit);
-    for (const StrengthSolver solver : {StrengthSolver::kFactor, StrengthSolver::kMultigrid}) {
+    for (const SolveBy solver : {SolveBy::kFactor, SolveBy::kMultigrid}) {
         double last = 0.0;
         bool rises = true;
         StrengthSettings settings = good;

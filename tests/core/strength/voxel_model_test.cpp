@@ -88,7 +88,7 @@ TEST_CASE("voxel model: hinges are filled by one voxel or two", "[strength]") {
 }
 
 TEST_CASE("voxel model: pieces never share a node", "[strength][property]") {
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
         const VoxelModel model = crumbs(9, seed);
         std::vector<std::uint32_t> owner(model.nodes.size(), model.pieces);
         std::size_t torn = 0;

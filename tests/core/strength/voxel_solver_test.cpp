@@ -96,7 +96,7 @@ TEST_CASE("patch test: constant strain gives constant stress and no force but at
     const Stress s = elasticity(material) * voigt;
     Eigen::Matrix3d stress;
     stress << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
         const double h = 0.4;
         const VoxelModel model = crumbs(8, seed, h);
         const CubeElement cube = cube_element(h, material);
@@ -136,7 +136,7 @@ TEST_CASE("voxel solver: both ways give one answer", "[strength]") {
             if (is_held[model.piece[v]] == 0)
                 for (const NodeIndex n : model.corners[v]) fixed[n] = 1;
         std::vector<NodeValues<double>> loads;
-        for (const std::uint64_t seed : {1, 2}) loads.push_back(random_values(3 * model.nodes.size(), seed));
+        for (const std::uint64_t seed : {1u, 2u}) loads.push_back(random_values(3 * model.nodes.size(), seed));
         SolverSettings settings{SolveBy::kFactor, 1e-10};
         const std::vector<VoxelSolution> exact = VoxelSolver(model, cube, fixed, settings, {}).solve(loads, {});
         settings.by = SolveBy::kMultigrid;
