@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/mesh/box_tree.h"
+#include "core/strength/cube_element.h"
 
 namespace fretwork {
 namespace {
@@ -80,9 +81,19 @@ void push_patch(const SurfaceVoxels& shell, const PatchLoad& patch, const VoxelM
         const VoxelIndex v = patch.voxels[i];
         const double pressed_n = patch.pressure_mpa * static_cast<double>(shell.area_mm2[v]);
         const Vec3 force_n = share * patch.force_n - pressed_n * shell.normals[v].cast<double>();
-        for (const NodeIndex corner : model.corners[takes[i]])
+        // Trilinear shares, so that a force on the voxel keeps its line of action.
+        const Vec3 at = ((shell.points_mm[v] - model.node_mm(model.corners[takes[i]][0])) / model.grid.voxel_mm)
+                            .cwiseMax(0.0)
+                            .cwiseMin(1.0);
+        for (std::size_t c = 0; c < 8; ++c) {
+            double part = 1.0;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const double high = at[static_cast<int>(axis)];
+                part *= (kCornerBits[c] >> axis & 1) != 0 ? high : 1.0 - high;
+            }
             for (std::size_t axis = 0; axis < 3; ++axis)
-                push_n[3 * std::size_t{corner} + axis] += 0.125 * force_n[static_cast<int>(axis)];
+                push_n[3 * std::size_t{model.corners[takes[i]][c]} + axis] += part * force_n[static_cast<int>(axis)];
+        }
     }
 }
 
