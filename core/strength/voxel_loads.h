@@ -25,8 +25,8 @@ struct VoxelCase {
 std::vector<VoxelCase> self_weight_cases(const VoxelModel& model, double fixed_share = 0.1);
 
 /// The cases that a pattern was designed for, on what has become of it.
-/// Pushes    each surface voxel of a patch hands its share of the force, and the pressure on its area, to the eight
-///           corners of the nearest solid voxel, as near as each lies, also where the pattern is empty: the whole force acts.
+/// Pushes    each surface voxel of a patch hands its share of the force, and the pressure on its area, to the corners
+///           of the nearest solid voxel, more to nearer ones, also where the pattern is empty: all of the force acts.
 /// Supports  voxels whose nearest surface voxel is fixed. A piece without any is held at its lowest tenth.
 /// Weight    acts on every voxel; `constant_per_sample`, the paper's rule, has no meaning here.
 /// Cost      about a microsecond per voxel and case with supports of its own.
