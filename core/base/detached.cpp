@@ -1,5 +1,6 @@
 #include "core/base/detached.h"
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -10,6 +11,8 @@
 namespace fretwork {
 namespace {
 
+std::atomic<int> running = 0;  // in the whole process
+
 struct Outcome {
     std::mutex mutex;
     std::condition_variable changed;
@@ -19,9 +22,14 @@ struct Outcome {
 
 }  // namespace
 
+bool detached_work_runs() {
+    return running > 0;
+}
+
 void wait_detached(std::function<void()> work, const RunControl& run) {
     run.throw_if_stopped();
     const auto outcome = std::make_shared<Outcome>();
+    ++running;
     std::thread([outcome, work = std::move(work)]() mutable {
         std::exception_ptr failure;
         try {
@@ -30,6 +38,7 @@ void wait_detached(std::function<void()> work, const RunControl& run) {
             failure = std::current_exception();
         }
         work = nullptr;  // what it owns goes before anybody hears of the end
+        --running;
         const std::lock_guard lock(outcome->mutex);
         outcome->failure = failure;
         outcome->done = true;

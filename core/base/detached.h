@@ -15,7 +15,11 @@ namespace fretwork {
 /// \throws Cancelled  `run` asked to stop.
 void wait_detached(std::function<void()> work, const RunControl& run);
 
-/// The same for work with a result.
+/// Whether work that was left behind still runs. A program that ends meanwhile must leave by `_exit`: libraries that
+/// take themselves down at exit would pull the ground from under it.
+[[nodiscard]] bool detached_work_runs();
+
+/// `wait_detached` for work with a result.
 /// \param work  copyable; holds what it needs by value or shared pointer
 template <class Work>
 auto run_detached(Work work, const RunControl& run) {

@@ -120,11 +120,15 @@ TEST_CASE("detached work: is left behind with all it owns when asked to stop", "
     asking.join();
     CHECK_FALSE(owned->ended);
     CHECK(owned.use_count() == 2);  // the work still holds it
+    CHECK(detached_work_runs());
     owned->may_end = true;
     for (int turn = 0; turn < 1000 && owned.use_count() > 1; ++turn)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     CHECK(owned->ended);
     CHECK(owned.use_count() == 1);
+    for (int turn = 0; turn < 1000 && detached_work_runs(); ++turn)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    CHECK_FALSE(detached_work_runs());
 }
 
 }  // namespace
