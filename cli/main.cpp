@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
 
 #include "cli/command.h"
+#include "core/base/detached.h"
 #include "core/pipeline/carve.h"
 
 namespace {
@@ -42,5 +45,8 @@ int main(int argc, char** argv) {
         return report_usage(program, error);
     }
     Interrupt interrupt;
-    return run_action(chosen, interrupt);
+    const int code = run_action(chosen, interrupt);
+    if (!fretwork::detached_work_runs()) return code;
+    std::fflush(nullptr);
+    std::_Exit(code);
 }

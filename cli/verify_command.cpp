@@ -6,14 +6,17 @@
 #include "cli/command.h"
 #include "cli/files.h"
 #include "cli/run_options.h"
+#include "cli/verify_strength.h"
 #include "core/base/parallel.h"
 #include "core/mesh/mesh_report.h"
 #include "core/mesh/repair.h"
 #include "core/pipeline/settings.h"
 #include "core/printability/print_faults.h"
 #include "core/printability/printability.h"
+#include "core/strength/strength_faults.h"
 #include "formats/facts_text.h"
 #include "formats/printability_facts.h"
+#include "formats/strength_facts.h"
 
 namespace fretwork::cli {
 namespace {
@@ -22,6 +25,8 @@ struct VerifyOptions {
     ModelSource model;
     FabricationOptions fabrication;
     std::optional<double> min_feature_mm, min_hole_mm;
+    StrengthOptions strength;
+    bool no_strength = false;
     bool json = false, strict = false;
     RunOptions run;
 };
@@ -68,20 +73,28 @@ int verify_command(const VerifyOptions& options, Interrupt& interrupt) {
     // Vertices of formats that know none are joined; nothing else changes in a sound mesh.
     const TriangleMesh mesh = repair_mesh(file.mesh, {}, run.slice(0.2, 0.3)).mesh;
     const MeshReport report = report_mesh(mesh, CountSelfIntersections::kYes, run.slice(0.3, 0.5));
-    const PrintabilityReport print =
-        printability(mesh, settings_of(options, bodies_in(file, model.format)), run.slice(0.5, 1.0));
+    const PrintabilityReport print = printability(mesh, settings_of(options, bodies_in(file, model.format)),
+                                                  run.slice(0.5, options.no_strength ? 1.0 : 0.6));
+    StrengthVerdict strength;
+    if (!options.no_strength)
+        strength = verify_strength(model, mesh, report, options.strength, limits_of(options.run), run.slice(0.6, 1.0));
     std::vector<std::string> faults = mesh_faults(report);
     for (std::string& fault : print_faults(print, options.fabrication.nozzle_mm)) faults.push_back(std::move(fault));
+    const std::vector<std::string> printing = faults;
+    faults.insert(faults.end(), strength.faults.begin(), strength.faults.end());
+    std::vector<std::string> cautions = print_cautions(print);
+    cautions.insert(cautions.end(), strength.cautions.begin(), strength.cautions.end());
 
     Facts facts;
     facts.add("file", options.model.path);
     facts.add("sound", faults.empty());
     add_mesh_facts(report, facts);
-    add_printability_facts(print, faults, "printability.", facts);
+    add_printability_facts(print, printing, "printability.", facts);
+    if (strength.check) add_strength_facts(*strength.check, strength.faults, "strength.", facts);
     fmt::print("{}", options.json ? facts_json(facts) : facts_lines(facts));
     if (!options.run.quiet) {
         for (const std::string& fault : faults) fmt::print(stderr, "fretwork: fault: {}\n", fault);
-        for (const std::string& caution : print_cautions(print)) fmt::print(stderr, "fretwork: note: {}\n", caution);
+        for (const std::string& caution : cautions) fmt::print(stderr, "fretwork: note: {}\n", caution);
     }
     return options.strict && !faults.empty() ? kBelowStandard : kDone;
 }
@@ -90,8 +103,8 @@ int verify_command(const VerifyOptions& options, Interrupt& interrupt) {
 
 void add_verify(CLI::App& program, Action& chosen) {
     auto options = std::make_shared<VerifyOptions>();
-    CLI::App* command =
-        program.add_subcommand("verify", "Say how well a model prints, layer by layer, and what is against it");
+    CLI::App* command = program.add_subcommand(
+        "verify", "Say whether a model prints, layer by layer, and holds, voxel by voxel, and what is against it");
     command->add_option("model", options->model.path, fmt::format("The model: {}; - reads standard input", kReadable))
         ->required()
         ->type_name("FILE");
@@ -109,6 +122,8 @@ void add_verify(CLI::App& program, Action& chosen) {
     command->add_option("--min-hole", options->min_hole_mm, "Narrower gaps are listed, mm (two lines)")
         ->type_name("NUMBER")
         ->group(printer);
+    add_strength_flags(*command, options->strength);
+    command->add_flag("--no-strength", options->no_strength, "Leave out whether it holds")->group("Strength");
     command->add_option("--input-format", options->model.format, "Format of the model when the name does not tell")
         ->type_name("FORMAT");
     command->add_option("--input-unit", options->model.unit, "Unit of a model whose file names none (millimeter)")

@@ -16,6 +16,7 @@ enum class RandomStream : std::uint32_t {
     kRender,
     kMeshDistance,
     kPrintability,
+    kStrength,
 };
 
 /// The same five numbers give the same 64 random bits on every machine and in any order of calls,

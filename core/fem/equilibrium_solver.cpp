@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <mutex>
 #include <string>
 #include <type_traits>
 
@@ -121,6 +122,10 @@ struct EquilibriumSolver::Impl {
 
     /// Nested dissection of the node graph; the three freedoms of a node stay together.
     std::vector<std::int64_t> ordering() {
+        // The library draws its random numbers from one sequence of the process: orderings on two threads at once would
+        // disturb each other's.
+        static std::mutex one_at_a_time;
+        const std::lock_guard lock(one_at_a_time);
         cholmod_sparse nodes = sparse_view(pattern.block_first(), pattern.block_row(), nullptr);
         std::vector<std::int64_t> node_order(pattern.free_nodes());
         if (cholmod_l_metis(&nodes, nullptr, 0, 1, node_order.data(), common.get()) == 0)
@@ -146,6 +151,10 @@ EquilibriumSolver::EquilibriumSolver(const StiffnessPattern& pattern) : impl_(st
 EquilibriumSolver::~EquilibriumSolver() = default;
 EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
 EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
+
+std::size_t EquilibriumSolver::factor_bytes() const {
+    return impl_->factor ? impl_->factor->xsize * sizeof(double) : 0;
+}
 
 void EquilibriumSolver::factorize(std::span<const double> values) {
     if (impl_->pattern.rows() == 0) return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -24,6 +25,9 @@ class EquilibriumSolver {
     ~EquilibriumSolver();
     EquilibriumSolver(EquilibriumSolver&&) noexcept;
     EquilibriumSolver& operator=(EquilibriumSolver&&) noexcept;
+
+    /// What the factor will take, known before it is made.
+    [[nodiscard]] std::size_t factor_bytes() const;
 
     /// \param values  of the pattern's entries
     /// \throws SolverFailure  the matrix is not positive definite: something moves freely.

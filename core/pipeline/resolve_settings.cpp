@@ -154,18 +154,6 @@ ReinforceSettings reinforce_settings(const Settings& settings, const ResolvedSet
     return s;
 }
 
-Material chosen_material(const StructureOptions& o) {
-    Material material = material_by_name(o.material);
-    if (o.youngs_modulus_mpa) material.youngs_modulus_mpa = *o.youngs_modulus_mpa;
-    if (o.poissons_ratio) material.poissons_ratio = *o.poissons_ratio;
-    if (o.density_kg_m3) material.density_kg_m3 = *o.density_kg_m3;
-    if (o.strength_mpa) {
-        material.strength_z_mpa = *o.strength_mpa;
-        material.strength_xy_mpa = std::max(material.strength_xy_mpa, *o.strength_mpa);
-    }
-    return material;
-}
-
 }  // namespace
 
 double longest_side(const TriangleMesh& mesh) {
@@ -209,6 +197,18 @@ ExemplarFacts exemplar_facts(const Exemplar& exemplar, std::optional<double> nat
     return {exemplar.width, std::max(half, 0.5), natural_width_mm};
 }
 
+Material material_of(const StructureOptions& o) {
+    Material material = material_by_name(o.material);
+    if (o.youngs_modulus_mpa) material.youngs_modulus_mpa = *o.youngs_modulus_mpa;
+    if (o.poissons_ratio) material.poissons_ratio = *o.poissons_ratio;
+    if (o.density_kg_m3) material.density_kg_m3 = *o.density_kg_m3;
+    if (o.strength_mpa) {
+        material.strength_z_mpa = *o.strength_mpa;
+        material.strength_xy_mpa = std::max(material.strength_xy_mpa, *o.strength_mpa);
+    }
+    return material;
+}
+
 ResolvedSettings resolve_settings(const Settings& settings, const SurfaceFacts& surface,
                                   const ExemplarFacts& exemplar) {
     ResolvedSettings r;
@@ -239,7 +239,7 @@ ResolvedSettings resolve_settings(const Settings& settings, const SurfaceFacts& 
                         pixels_per_voxel, static_cast<int>(std::ceil(r.voxelize.resolution * pixels_per_voxel / 1.5))));
     r.synthesis = synthesis_settings(settings.synthesis, pixels_per_voxel);
 
-    r.material = chosen_material(settings.structure);
+    r.material = material_of(settings.structure);
     r.reinforce = reinforce_settings(settings, r, exemplar.half_stroke_px / pixels_per_voxel * r.voxel_mm);
     if (const int halvings = choose_halvings(settings, surface, r); halvings > 0) coarsen(halvings, r);
     return r;

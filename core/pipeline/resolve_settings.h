@@ -55,6 +55,10 @@ double input_scale(const TriangleMesh& mesh, const InputOptions& input);
 /// \throws InvalidSetting     an unknown material.
 ResolvedSettings resolve_settings(const Settings& settings, const SurfaceFacts& surface, const ExemplarFacts& exemplar);
 
+/// The material that the settings describe: that of the table with the values of its own on top.
+/// \throws InvalidSetting  an unknown name
+Material material_of(const StructureOptions& structure);
+
 /// Longest side of the bounding box, in the mesh's units.
 /// \throws InvalidInput  no vertex, or a coordinate that is not finite.
 double longest_side(const TriangleMesh& mesh);

@@ -1,9 +1,14 @@
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
+#include <memory>
 #include <set>
+#include <thread>
 #include <vector>
 
 #include "core/base/counter_random.h"
+#include "core/base/detached.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/run_control.h"
@@ -87,6 +92,43 @@ TEST_CASE("words between commas: without the blanks around them, and no empty on
     CHECK(words_between_commas(" , ,").empty());
     CHECK(words_between_commas("").empty());
     CHECK(words_between_commas("x") == Words{"x"});
+}
+
+TEST_CASE("detached work: hands on its result and its exception", "[base]") {
+    CHECK(run_detached([] { return 42; }, {}) == 42);
+    CHECK(*run_detached([] { return std::make_unique<int>(7); }, {}) == 7);
+    CHECK_THROWS_AS(wait_detached([] { throw InvalidInput("broken"); }, {}), InvalidInput);
+}
+
+TEST_CASE("detached work: is left behind with all it owns when asked to stop", "[base]") {
+    struct Owned {
+        std::atomic<bool> may_end = false, ended = false;
+    };
+    const auto owned = std::make_shared<Owned>();
+    std::stop_source source;
+    std::thread asking([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        source.request_stop();
+    });
+    CHECK_THROWS_AS(wait_detached(
+                        [owned] {
+                            while (!owned->may_end) std::this_thread::yield();
+                            owned->ended = true;
+                        },
+                        RunControl({}, source.get_token())),
+                    Cancelled);
+    asking.join();
+    CHECK_FALSE(owned->ended);
+    CHECK(owned.use_count() == 2);  // the work still holds it
+    CHECK(detached_work_runs());
+    owned->may_end = true;
+    for (int turn = 0; turn < 1000 && owned.use_count() > 1; ++turn)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    CHECK(owned->ended);
+    CHECK(owned.use_count() == 1);
+    for (int turn = 0; turn < 1000 && detached_work_runs(); ++turn)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    CHECK_FALSE(detached_work_runs());
 }
 
 }  // namespace

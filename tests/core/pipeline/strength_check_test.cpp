@@ -1,0 +1,71 @@
+#include "core/pipeline/strength_check.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/base/error.h"
+#include "support/make_meshes.h"
+
+namespace fretwork {
+namespace {
+
+using namespace testing;
+
+StrengthCheckSettings settings_at(int resolution) {
+    StrengthCheckSettings settings;
+    settings.analysis.material = material_by_name("PLA");
+    settings.resolution = resolution;
+    return settings;
+}
+
+TEST_CASE("strength check: keeps to the memory by larger voxels, and says so", "[strength]") {
+    const TriangleMesh ring = make_torus(20.0, 4.0, 48, 24);
+    StrengthCheckSettings settings = settings_at(96);
+    const StrengthCheck asked = check_strength(ring, std::nullopt, 0.1, settings);
+    CHECK_FALSE(asked.coarser);
+    CHECK(asked.report.voxel_mm == Approx(48.0 / 96).epsilon(1e-3));
+    CHECK(asked.report.cases.size() == 3);
+
+    const std::uint64_t needed =
+        memory_for(make_voxel_model(ring, asked.report.voxel_mm), 3) + asked.report.factor_bytes;
+    settings.analysis.max_memory_bytes = needed / 2;
+    const StrengthCheck coarser = check_strength(ring, std::nullopt, 0.1, settings);
+    CHECK(coarser.coarser);
+    CHECK(coarser.asked_voxel_mm == asked.report.voxel_mm);
+    CHECK(coarser.report.voxels < asked.report.voxels / 2);
+    // Still the same ring.
+    CHECK(coarser.report.volume_mm3 == Approx(asked.report.volume_mm3).epsilon(0.05));
+    settings.analysis.max_memory_bytes = 1000;
+    CHECK_THROWS_AS(check_strength(ring, std::nullopt, 0.1, settings), MemoryLimit);
+}
+
+TEST_CASE("strength check: loads act alike through the model and through the carved surface", "[strength]") {
+    // The file stands on its side, and in centimetres.
+    const TriangleMesh post = make_box(Vec3::Zero(), Vec3(40, 4, 4), {20, 2, 2});
+    TriangleMesh file = scaled(post, 0.1);
+    Settings settings;
+    settings.input.scale = 10.0;
+    settings.structure.profile = LoadProfile::kOwn;
+    settings.loads.push_back({{"end", BoxRegion{Vec3(39.9, -1, -1), Vec3(41, 5, 5)}}, "pull", Vec3(8, 0, 0), 0.0});
+    settings.fixtures.push_back({{"foot", BoxRegion{Vec3(-1, -1, -1), Vec3(2, 5, 5)}}, ""});
+    const SurfaceLoads by_model = loads_of_source(file, {}, settings, 80);
+    const SurfaceLoads by_carved = loads_of_carved(post, settings, 80);
+    StrengthCheckSettings fine = settings_at(80);
+    fine.analysis.keep_fields = true;
+    const StrengthReport a = check_strength(post, by_model, 0.1, fine).report;
+    const StrengthReport b = check_strength(post, by_carved, 0.1, fine).report;
+    for (const StrengthReport& report : {a, b}) {
+        REQUIRE(report.cases.size() == 1);
+        CHECK(report.cases[0].applied_n[0] == Approx(8.0));
+        CHECK(report.cases[0].reaction_n[0] == Approx(-8.0));
+    }
+    // 8 N on 16 mm^2 in the middle of the post, whose weight (0.2 mN) is nothing beside it.
+    const VoxelModel model = make_voxel_model(post, 0.5);
+    for (std::size_t v = 0; v < model.voxels.size(); ++v)
+        if (model.voxels[v] == VoxelCoord{45, 4, 4}) {
+            CHECK(a.cases[0].stress_mpa[v][0] == Approx(0.5).epsilon(0.01));
+            CHECK(b.cases[0].stress_mpa[v][0] == Approx(0.5).epsilon(0.01));
+        }
+}
+
+}  // namespace
+}  // namespace fretwork
