@@ -91,8 +91,9 @@ std::vector<CarvedTarget> carve_targets(CarveModel& model, const Settings& setti
                             carve(input, own, limits, r.slice(0.0, engine), trace ? KeepTrace::kYes : KeepTrace::kNo);
                         CarvedTarget& carved = all.emplace_back();
                         if (own.output.voxel_data)
-                            carved.sheets = make_voxel_sheets(
-                                {result.shell, result.solid, result.reinforced, result.voxel_colors}, r);
+                            carved.sheets = make_voxel_sheets({result.shell, result.solid, result.reinforced,
+                                                               result.voxel_colors, result.stress_mpa, result.labels},
+                                                              r);
                         if (trace) {
                             const ThreadLimit threads(limits.threads);
                             carved.views = report_views(input.exemplar, result, kViewTriangles / model.targets.size(),

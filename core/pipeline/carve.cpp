@@ -11,6 +11,7 @@
 #include "core/mesh/mesh_report.h"
 #include "core/pipeline/intended_use.h"
 #include "core/pipeline/keep_regions.h"
+#include "core/pipeline/label_patches.h"
 #include "core/pipeline/memory_use.h"
 #include "core/pipeline/output_color.h"
 #include "core/pipeline/prepare_surface.h"
@@ -220,6 +221,8 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
         return structure_loop(shell, input.exemplar, synthesizer, profile, resolved, keep, r);
     });
     note_structure(loop, report);
+    result.stress_mpa = stress_on_voxels(shell, loop.solid, loop.last_scored).voxel_mpa;
+    result.labels = label_patches(shell, synthesizer.frames(), input.exemplar);
     if (result.trace) result.trace->stress = design_stress(shell, result.trace->first_solid, loop);
     result.reinforced = std::move(loop.forced);
 

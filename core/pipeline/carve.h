@@ -41,6 +41,8 @@ struct CarveResult {
     SolidStates solid;
     std::vector<std::uint8_t> reinforced;  ///< one byte per voxel: forced solid by the structural steps
     std::vector<Rgb8> voxel_colors;        ///< sRGB, one per voxel
+    std::vector<float> stress_mpa;         ///< of the reinforced pattern, one per voxel; see StressField
+    std::vector<std::uint16_t> labels;     ///< one per voxel; see label_patches.h
     std::optional<CarveTrace> trace;       ///< only if it was asked for
     RunReport report;
 };
