@@ -10,6 +10,7 @@
 #include "cli/files.h"
 #include "cli/make_rule.h"
 #include "cli/pattern_options.h"
+#include "cli/report_page.h"
 #include "cli/run_options.h"
 #include "cli/scad_model.h"
 #include "cli/slicing.h"
@@ -32,7 +33,7 @@ struct CarveOptions {
     bool again = false;
     std::string source;
     RunOptions run;
-    std::string summary, preview, dependencies;
+    std::string summary, report, preview, dependencies;
     bool check = false;
     bool strict = false;
     std::string slice;  ///< profile
@@ -176,6 +177,7 @@ void put_carved(const CarveOptions& options, const CarvedModel& result, const st
     const MeshFormat format = output_format(options.output, options.export_format);
     const MeshBytes carved = carved_bytes(result, options.output, format, run.slice(0.0, 0.6));
     if (!options.preview.empty()) put(options.preview, preview_png(result, run.slice(0.6, 0.9)), interrupt);
+    if (!options.report.empty()) put(options.report, report_page(result.model, result.carved, reports), interrupt);
     // With --slice, the slicer has its word first.
     if (options.slice.empty()) put_summary(options, result.model, reports, interrupt);
     if (!options.dependencies.empty()) {
@@ -247,7 +249,8 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     if (options.output.empty()) throw InvalidSetting("no output: give -o FILE, or --check to carve nothing");
     output_format(options.output, options.export_format);
     check_slicing(options);
-    for (const std::string& target : {options.output, options.summary, options.preview, options.dependencies})
+    for (const std::string& target :
+         {options.output, options.summary, options.report, options.preview, options.dependencies})
         check_target(target, {options.model.path, options.pattern.exemplar, options.pattern.mask, options.source});
     const RunLimits limits = limits_of(options.run);
     const RunControl run = control_of(options.run, interrupt);
@@ -257,7 +260,8 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     check_package(options, opened.model);
     check_paint(options, settings.output);
     std::vector<CarvedTarget> carved =
-        carve_targets(opened.model, settings, opened.request.pictures, limits, run.slice(0.02, 0.95));
+        carve_targets(opened.model, settings, opened.request.pictures, limits,
+                      options.report.empty() ? KeepViews::kNo : KeepViews::kYes, run.slice(0.02, 0.95));
 
     if (output_format(options.output, options.export_format) == MeshFormat::kThreemf)
         paint_targets(carved, settings.output);
@@ -302,6 +306,9 @@ void add_carve(CLI::App& program, Action& chosen) {
         ->type_name("FORMAT")
         ->group(files);
     command->add_option("--summary", options->summary, "Write the run report, JSON (docs/report.schema.json)")
+        ->type_name("FILE")
+        ->group(files);
+    command->add_option("--report", options->report, "Write a page of pictures, charts and a 3D view, HTML in one file")
         ->type_name("FILE")
         ->group(files);
     command->add_option("--preview", options->preview, "Draw the result into a PNG")->type_name("FILE")->group(files);

@@ -7,12 +7,17 @@
 #include <Eigen/Geometry>
 
 #include "cli/pattern_options.h"
+#include "cli/report_page.h"
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/pipeline/extruder_palette.h"
 #include "core/pipeline/object_settings.h"
 
 namespace fretwork::cli {
 namespace {
+
+/// Of the 3D views of a report, all objects together: a megabyte or so.
+constexpr std::size_t kViewTriangles = 60000;
 
 CarveInput input_of(const CarveModel& model, CarveTarget& target, const Settings& settings, PictureFiles& pictures) {
     ChosenExemplar chosen = exemplar_of(settings, pictures);
@@ -76,15 +81,24 @@ std::string label_of(const CarveTarget& target) {
 }
 
 std::vector<CarvedTarget> carve_targets(CarveModel& model, const Settings& settings, PictureFiles& pictures,
-                                        const RunLimits& limits, const RunControl& run) {
+                                        const RunLimits& limits, KeepViews views, const RunControl& run) {
+    const bool trace = views == KeepViews::kYes;
+    const double engine = trace ? 0.75 : 1.0;  // its share of the time
     std::vector<CarvedTarget> all;
     for_each_target(model, settings, pictures, run,
                     [&](const CarveTarget& target, const CarveInput& input, const Settings& own, const RunControl& r) {
-                        CarveResult result = carve(input, own, limits, r);
+                        CarveResult result =
+                            carve(input, own, limits, r.slice(0.0, engine), trace ? KeepTrace::kYes : KeepTrace::kNo);
                         CarvedTarget& carved = all.emplace_back();
                         if (own.output.voxel_data)
-                            carved.sheets = make_voxel_sheets(
-                                {result.shell, result.solid, result.reinforced, result.voxel_colors}, r);
+                            carved.sheets = make_voxel_sheets({result.shell, result.solid, result.reinforced,
+                                                               result.voxel_colors, result.stress_mpa, result.labels},
+                                                              r);
+                        if (trace) {
+                            const ThreadLimit threads(limits.threads);
+                            carved.views = report_views(input.exemplar, result, kViewTriangles / model.targets.size(),
+                                                        r.slice(engine, 1.0));
+                        }
                         carved.mesh = std::move(result.carved.mesh);
                         carved.triangle_colors = std::move(result.carved.triangle_colors);
                         carved.report = std::move(result.report);

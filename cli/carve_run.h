@@ -7,6 +7,7 @@
 #include "cli/carve_model.h"
 #include "cli/picture_files.h"
 #include "core/pipeline/carve.h"
+#include "formats/report_html.h"
 #include "formats/voxel_sheets.h"
 
 namespace fretwork::cli {
@@ -18,12 +19,16 @@ struct CarvedTarget {
     std::optional<VoxelSheets> sheets;
     std::vector<std::uint8_t> extruders;  ///< one per triangle; empty where nothing is painted
     RunReport report;
+    std::optional<ReportViews> views;  ///< only if they were asked for
 };
 
+enum class KeepViews { kNo, kYes };
+
 /// One per target, each with its own settings (`[[object]]`). The meshes of the targets are used up.
+/// \param views  whether to make what a report shows of each
 /// \throws  see carve; messages name the model and, if there are several, the object.
 std::vector<CarvedTarget> carve_targets(CarveModel& model, const Settings& settings, PictureFiles& pictures,
-                                        const RunLimits& limits, const RunControl& run);
+                                        const RunLimits& limits, KeepViews views, const RunControl& run);
 
 /// Gives every triangle the extruder of the palette that stands best for all targets together, and notes it in the
 /// reports. Does nothing where `output.paint` asks for nothing.

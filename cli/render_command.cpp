@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/files.h"
+#include "cli/render_colors.h"
 #include "cli/run_options.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -23,6 +24,7 @@ struct RenderOptions {
     RenderSettings settings;
     int views = 1;
     bool no_colors = false;
+    std::string color = "pattern";
     RunOptions run;
 };
 
@@ -58,13 +60,30 @@ Image picture_of(const MeshFile& file, const RenderOptions& options, const Rende
     return contact_sheet(pictures, static_cast<int>(std::ceil(std::sqrt(options.views))));
 }
 
+/// The model with the colours that were asked for.
+MeshFile colored_model(const RenderOptions& options, const RunControl& run) {
+    const RenderColor color = render_color_named(options.color);
+    if (color == RenderColor::kPattern) return read_model(options.model, run);
+    if (color == RenderColor::kSolid) {
+        MeshFile file = read_model(options.model, run);
+        file.triangle_colors.clear();
+        return file;
+    }
+    const ModelBytes model = read_bytes(options.model, run);
+    if (model.format != MeshFormat::kThreemf)
+        throw InvalidInput(fmt::format("--colour {}: found {}, expected a carved 3MF", options.color, model.name));
+    VolumetricFile file = read_threemf_with_volumes(model.bytes, model.name, run);
+    file.mesh.triangle_colors = render_colors(file, color, model.name);
+    return std::move(file.mesh);
+}
+
 int render_command(const RenderOptions& options, Interrupt& interrupt) {
     check_target(options.output, {options.model.path});
     RenderSettings settings = options.settings;
     set_size(options.size, settings);
     const ThreadLimit threads(options.run.threads);
     const RunControl run = control_of(options.run, interrupt);
-    const MeshFile file = read_model(options.model, run.slice(0.0, 0.1));
+    const MeshFile file = colored_model(options, run.slice(0.0, 0.1));
     const Image picture = picture_of(file, options, settings, run.slice(0.1, 0.95));
     put(options.output, write_png(picture), interrupt);
     run.checkpoint("write", 1.0);
@@ -95,6 +114,11 @@ void add_render(CLI::App& program, Action& chosen) {
     command->add_option("--views", options->views, "Views from all around on one sheet")
         ->type_name("N")
         ->check(CLI::Range(1, 36));
+    command
+        ->add_option("--colour,--color", options->color,
+                     "pattern, or of a carved 3MF what its voxel data say: stress, bridges, labels; solid is one "
+                     "material (pattern)")
+        ->type_name("WHAT");
     command->add_flag("--no-colors", options->no_colors, "One material instead of the model's colours");
     command->add_option("--input-format", options->model.format, "Format of FILE when the name does not tell")
         ->type_name("FORMAT");

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh Debian 12 machine to a carved bunny: packages, build, carve, picture, report.
+# From a fresh Debian 12 machine to a carved bunny: packages, build, carve, picture, summary, page.
 #   examples/bunny.sh [PATTERN [RESOLUTION]]
 # The bunny is the 75,408-triangle one of Debian's libcgal-demo package; it is fetched as a package,
 # unpacked beside the results, and never becomes part of this project.
@@ -26,5 +26,6 @@ if [ ! -s "$out/bunny00.off" ]; then
 fi
 
 build/release/cli/fretwork carve "$out/bunny00.off" --up y --size-mm 100 --pattern "$pattern" --set "shell.resolution=$resolution" \
-  -o "$out/bunny-$pattern.3mf" --summary "$out/bunny-$pattern.json" --preview "$out/bunny-$pattern.png"
+  -o "$out/bunny-$pattern.3mf" --summary "$out/bunny-$pattern.json" --preview "$out/bunny-$pattern.png" \
+  --report "$out/bunny-$pattern.html"
 ls -l "$out"/bunny-"$pattern".*

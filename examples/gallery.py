@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes every picture of README.md and docs/, and the tables of docs/gallery.md, from the built programs.
+"""Makes every picture of README.md and docs/, the tables of docs/gallery.md and the page in examples/, from the built programs.
 
     examples/gallery.py [--build build/release] [--models FOLDER] [--resolution 256] [--only NAME ...]
 
@@ -43,6 +43,9 @@ FIGURES = [
     ("bunny-waves", "bunny00.off", ["--up", "y", "--pattern", "waves"], ["--azimuth", "30"]),
     ("bunny-zebra", "bunny00.off", ["--up", "y", "--pattern", "zebra"], ["--azimuth", "30"]),
 ]
+
+# The figure whose page is kept in examples/.
+PAGE = "bunny-cells"
 
 
 def run(*line, **more):
@@ -124,7 +127,9 @@ class Gallery:
             return
         made, summary = self.out / (name + ".3mf"), self.out / (name + ".json")
         run(self.fretwork, "carve", source, "-q", "--size-mm", "100", *carve, "--resolution", self.resolution,
-            "-o", made, "--summary", summary)
+            "-o", made, "--summary", summary, "--report", self.out / (name + ".html"))
+        if name == PAGE:
+            shutil.copyfile(self.out / (name + ".html"), ROOT / "examples" / (name + ".html"))
         self.render([made], "800", view, name)
         back = self.out / (name + "-back.png")
         run(self.fretwork, "render", made, "-q", "--size", "480", "--azimuth", "210", "-o", back)

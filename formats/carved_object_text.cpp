@@ -77,6 +77,7 @@ CarvedObjectText::CarvedObjectText(const CarvedObject& object, const std::string
     sheets_ = object.voxels != nullptr ? &own_sheets_ : object.sheets;
     field_stack_ = "voxels" + stack_suffix;
     reinforced_stack_ = "reinforced" + stack_suffix;
+    facts_stack_ = "facts" + stack_suffix;
 }
 
 std::string CarvedObjectText::resources(const ModelDialect& dialect, const std::function<std::uint32_t()>& next_id) {
@@ -89,49 +90,75 @@ std::string CarvedObjectText::resources(const ModelDialect& dialect, const std::
         xml += "</" + dialect.material + "colorgroup>\n";
     }
     if (sheets_ == nullptr) return xml;
-    const std::uint32_t field = add_function(xml, dialect, field_stack_, sheets_->field.size(), next_id);
-    const std::uint32_t reinforced = sheets_->reinforced.empty() ? 0
-                                                                 : add_function(xml, dialect, reinforced_stack_,
-                                                                                sheets_->reinforced.size(), next_id);
+    const auto image = [&](const std::string& stack, const VoxelGrid& grid, std::size_t sheet_count) {
+        return add_image(xml, dialect, stack, grid, sheet_count, next_id);
+    };
+    const auto function = [&](const std::string& name, std::uint32_t of_image, double scale) {
+        return add_function(xml, dialect, name, of_image, scale, next_id);
+    };
+    Functions functions;
+    functions.field = function(field_stack_, image(field_stack_, sheets_->grid, sheets_->field.size()), 1.0);
+    if (!sheets_->reinforced.empty())
+        functions.reinforced =
+            function(reinforced_stack_, image(reinforced_stack_, sheets_->grid, sheets_->reinforced.size()), 1.0);
+    if (!sheets_->facts.empty()) {
+        const std::uint32_t facts = image(facts_stack_, sheets_->facts_grid, sheets_->facts.size());
+        if (sheets_->most_stress_mpa > 0.0) functions.stress = function("stress", facts, sheets_->most_stress_mpa);
+        functions.label = function("label", facts, 65535.0);
+    }
     volume_ = next_id();
-    return xml + volume_data(dialect, field, reinforced);
+    return xml + volume_data(dialect, functions);
 }
 
-/// Appends the image and its function. \return id of the function
-std::uint32_t CarvedObjectText::add_function(std::string& xml, const ModelDialect& dialect, const std::string& stack,
-                                             std::size_t sheet_count,
-                                             const std::function<std::uint32_t()>& next_id) const {
+/// Appends the image. \return its id
+std::uint32_t CarvedObjectText::add_image(std::string& xml, const ModelDialect& dialect, const std::string& stack,
+                                          const VoxelGrid& grid, std::size_t sheet_count,
+                                          const std::function<std::uint32_t()>& next_id) const {
     const std::uint32_t image = next_id();
-    const std::uint32_t function = next_id();
     const std::string open = "<" + dialect.volumetric, close = "</" + dialect.volumetric;
     xml += open + "image3d" + number_attribute("id", image) + xml_attribute("name", stack) + ">" + open + "imagestack" +
-           xml_attribute("rowcount", std::to_string(sheets_->grid.extent[1])) +
-           xml_attribute("columncount", std::to_string(sheets_->grid.extent[0])) +
-           number_attribute("sheetcount", sheet_count) + ">\n";
+           xml_attribute("rowcount", std::to_string(grid.extent[1])) +
+           xml_attribute("columncount", std::to_string(grid.extent[0])) + number_attribute("sheetcount", sheet_count) +
+           ">\n";
     for (std::size_t k = 0; k < sheet_count; ++k)
         xml += open + "imagesheet" + xml_attribute("path", sheet_path(stack, k)) + "/>\n";
-    xml += close + "imagestack>" + close + "image3d>\n" + open + "functionfromimage3d" +
-           number_attribute("id", function) + xml_attribute("displayname", stack) +
-           number_attribute("image3did", image) +
-           " filter=\"nearest\" valueoffset=\"0\" valuescale=\"1\" tilestyleu=\"clamp\" tilestylev=\"clamp\""
-           " tilestylew=\"clamp\"/>\n";
+    xml += close + "imagestack>" + close + "image3d>\n";
+    return image;
+}
+
+/// Appends a function of an image. \return its id
+std::uint32_t CarvedObjectText::add_function(std::string& xml, const ModelDialect& dialect, const std::string& name,
+                                             std::uint32_t image, double scale,
+                                             const std::function<std::uint32_t()>& next_id) {
+    const std::uint32_t function = next_id();
+    std::string scale_text;
+    append_number(scale_text, scale);
+    xml += "<" + dialect.volumetric + "functionfromimage3d" + number_attribute("id", function) +
+           xml_attribute("displayname", name) + number_attribute("image3did", image) +
+           " filter=\"nearest\" valueoffset=\"0\"" + xml_attribute("valuescale", scale_text) +
+           " tilestyleu=\"clamp\" tilestylev=\"clamp\" tilestylew=\"clamp\"/>\n";
     return function;
 }
 
-std::string CarvedObjectText::volume_data(const ModelDialect& dialect, std::uint32_t field,
-                                          std::uint32_t reinforced) const {
-    const std::string transform = xml_attribute("transform", grid_transform(sheets_->grid, dialect.units_per_mm));
-    const auto property = [&](const std::string& name, std::uint32_t function, std::string_view channel) {
+std::string CarvedObjectText::volume_data(const ModelDialect& dialect, const Functions& functions) const {
+    const auto transform_of = [&](const VoxelGrid& grid) {
+        return xml_attribute("transform", grid_transform(grid, dialect.units_per_mm));
+    };
+    const std::string fine = transform_of(sheets_->grid), coarse = transform_of(sheets_->facts_grid);
+    const auto property = [&](const std::string& name, std::uint32_t function, std::string_view channel,
+                              const std::string& transform) {
         return "<" + dialect.volumetric + "property" + xml_attribute("name", dialect.own + name) +
                " required=\"true\"" + number_attribute("functionid", function) + xml_attribute("channel", channel) +
                transform + "/>\n";
     };
     std::string xml = "<" + dialect.volumetric + "volumedata" + number_attribute("id", volume_) + ">\n";
     if (sheets_->colored)
-        xml += "<" + dialect.volumetric + "color" + number_attribute("functionid", field) +
-               xml_attribute("channel", "color") + transform + "/>\n";
-    xml += property("solid", field, "alpha");
-    if (reinforced != 0) xml += property("reinforced", reinforced, "red");
+        xml += "<" + dialect.volumetric + "color" + number_attribute("functionid", functions.field) +
+               xml_attribute("channel", "color") + fine + "/>\n";
+    xml += property("solid", functions.field, "alpha", fine);
+    if (functions.reinforced != 0) xml += property("reinforced", functions.reinforced, "red", fine);
+    if (functions.stress != 0) xml += property("stress", functions.stress, "red", coarse);
+    if (functions.label != 0) xml += property("label", functions.label, "green", coarse);
     return xml + "</" + dialect.volumetric + "volumedata>\n";
 }
 
@@ -202,6 +229,8 @@ std::vector<std::pair<std::string, std::string>> CarvedObjectText::sheets() cons
         all.emplace_back(sheet_path(field_stack_, k), sheets_->field[k]);
     for (std::size_t k = 0; k < sheets_->reinforced.size(); ++k)
         all.emplace_back(sheet_path(reinforced_stack_, k), sheets_->reinforced[k]);
+    for (std::size_t k = 0; k < sheets_->facts.size(); ++k)
+        all.emplace_back(sheet_path(facts_stack_, k), sheets_->facts[k]);
     return all;
 }
 

@@ -48,10 +48,16 @@ class CarvedObjectText {
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> sheets() const;
 
   private:
-    std::uint32_t add_function(std::string& xml, const ModelDialect& dialect, const std::string& stack,
-                               std::size_t sheet_count, const std::function<std::uint32_t()>& next_id) const;
-    [[nodiscard]] std::string volume_data(const ModelDialect& dialect, std::uint32_t field,
-                                          std::uint32_t reinforced) const;
+    /// Functions of the volume data; 0 where there is none.
+    struct Functions {
+        std::uint32_t field = 0, reinforced = 0, stress = 0, label = 0;
+    };
+    std::uint32_t add_image(std::string& xml, const ModelDialect& dialect, const std::string& stack,
+                            const VoxelGrid& grid, std::size_t sheet_count,
+                            const std::function<std::uint32_t()>& next_id) const;
+    static std::uint32_t add_function(std::string& xml, const ModelDialect& dialect, const std::string& name,
+                                      std::uint32_t image, double scale, const std::function<std::uint32_t()>& next_id);
+    [[nodiscard]] std::string volume_data(const ModelDialect& dialect, const Functions& functions) const;
     [[nodiscard]] std::string vertices(const ModelDialect& dialect, std::size_t begin) const;
     [[nodiscard]] std::string triangles(const ModelDialect& dialect, std::size_t begin) const;
 
@@ -59,7 +65,7 @@ class CarvedObjectText {
     std::vector<Rgb8> palette_;
     VoxelSheets own_sheets_;
     const VoxelSheets* sheets_ = nullptr;
-    std::string field_stack_, reinforced_stack_;
+    std::string field_stack_, reinforced_stack_, facts_stack_;
     std::uint32_t color_group_ = 0;
     std::uint32_t volume_ = 0;
 };

@@ -1,5 +1,6 @@
 #include "formats/voxel_sheets.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -33,6 +34,8 @@ void check_data(const VoxelData& data) {
     check(data.solid.size(), "solid", false);
     check(data.reinforced.size(), "reinforced", true);
     check(data.colors.size(), "colour", true);
+    check(data.stress_mpa.size(), "stress", true);
+    check(data.labels.size(), "label", true);
     for (const std::int32_t cells : shell.grid.extent)
         if (cells < 1 || cells > kMaxCells)
             throw InvalidInput("write voxel data: found a grid of " + std::to_string(cells) +
@@ -79,6 +82,24 @@ class SheetMaker {
         return write_png_gray8(samples, width(), height());
     }
 
+    /// Sheet z of the cells that are twice as large.
+    [[nodiscard]] std::string facts(std::size_t z, const VoxelGrid& grid, double most_stress_mpa) const {
+        const auto columns = static_cast<std::size_t>(grid.extent[0]), rows = static_cast<std::size_t>(grid.extent[1]);
+        std::vector<std::uint16_t> samples(3 * columns * rows, 0);
+        for (std::size_t v = first_[2 * z]; v < first_[std::min(2 * z + 2, first_.size() - 1)]; ++v) {
+            const VoxelCoord& c = data_.shell.coords[v];
+            const std::size_t row = rows - 1 - static_cast<std::size_t>(c[1]) / 2;
+            std::uint16_t* cell = samples.data() + 3 * (row * columns + static_cast<std::size_t>(c[0]) / 2);
+            // Where it is known to be next to nothing it is not 0.
+            if (most_stress_mpa > 0.0 && data_.stress_mpa[v] >= 0.0F) {
+                const double share = static_cast<double>(data_.stress_mpa[v]) / most_stress_mpa;
+                cell[0] = std::max({cell[0], std::uint16_t{1}, static_cast<std::uint16_t>(std::lround(kOne * share))});
+            }
+            if (cell[1] == 0 && !data_.labels.empty()) cell[1] = data_.labels[v];
+        }
+        return write_png16(samples, grid.extent[0], grid.extent[1], 3);
+    }
+
   private:
     [[nodiscard]] int width() const { return data_.shell.grid.extent[0]; }
     [[nodiscard]] int height() const { return data_.shell.grid.extent[1]; }
@@ -96,6 +117,12 @@ class SheetMaker {
     std::array<std::uint16_t, 256> linear_ = make_linear_table();
 };
 
+VoxelGrid twice_as_coarse(VoxelGrid grid) {
+    grid.voxel_mm *= 2.0;
+    for (std::int32_t& cells : grid.extent) cells = (cells + 1) / 2;
+    return grid;
+}
+
 }  // namespace
 
 VoxelSheets make_voxel_sheets(const VoxelData& data, const RunControl& run) {
@@ -106,6 +133,15 @@ VoxelSheets make_voxel_sheets(const VoxelData& data, const RunControl& run) {
     sheets.colored = !data.colors.empty();
     sheets.field.resize(static_cast<std::size_t>(data.shell.grid.extent[2]));
     if (!data.reinforced.empty()) sheets.reinforced.resize(sheets.field.size());
+    sheets.facts_grid = twice_as_coarse(data.shell.grid);
+    if (!data.stress_mpa.empty())
+        sheets.most_stress_mpa = std::max(0.0, static_cast<double>(*std::ranges::max_element(data.stress_mpa)));
+    if (sheets.most_stress_mpa > 0.0 || !data.labels.empty())
+        sheets.facts.resize(static_cast<std::size_t>(sheets.facts_grid.extent[2]));
+    parallel_for(sheets.facts.size(), 1, [&](std::size_t z) {
+        run.throw_if_stopped();
+        sheets.facts[z] = maker.facts(z, sheets.facts_grid, sheets.most_stress_mpa);
+    });
     parallel_for(sheets.field.size(), 1, [&](std::size_t z) {
         run.throw_if_stopped();
         sheets.field[z] = maker.field(z);

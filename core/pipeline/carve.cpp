@@ -11,11 +11,13 @@
 #include "core/mesh/mesh_report.h"
 #include "core/pipeline/intended_use.h"
 #include "core/pipeline/keep_regions.h"
+#include "core/pipeline/label_patches.h"
 #include "core/pipeline/memory_use.h"
 #include "core/pipeline/output_color.h"
 #include "core/pipeline/prepare_surface.h"
 #include "core/pipeline/resolve_settings.h"
 #include "core/pipeline/settings_schema.h"
+#include "core/pipeline/shell_stress.h"
 #include "core/pipeline/stage_plan.h"
 #include "core/pipeline/structure_loop.h"
 #include "core/printability/print_faults.h"
@@ -160,13 +162,24 @@ std::vector<Rgb8> voxel_colors(const SurfaceVoxels& shell, std::vector<Rgb8> pat
     return pattern;
 }
 
+/// What the first synthesis made, before anything is reinforced.
+CarveTrace trace_of_synthesis(const Exemplar& exemplar, const Synthesizer& synthesizer,
+                              const std::vector<std::uint8_t>& keep) {
+    CarveTrace trace;
+    trace.first_solid =
+        solid_with(exemplar, synthesizer.frames(), keep, std::vector<std::uint8_t>(keep.size(), std::uint8_t{0}));
+    trace.first_colors = read_color(exemplar, synthesizer.frames());
+    return trace;
+}
+
 std::size_t component_count(const SurfaceVoxels& shell) {
     return shell.components.empty() ? 0 : std::ranges::max(shell.components) + std::size_t{1};
 }
 
 }  // namespace
 
-CarveResult carve(const CarveInput& input, const Settings& settings, const RunLimits& limits, const RunControl& run) {
+CarveResult carve(const CarveInput& input, const Settings& settings, const RunLimits& limits, const RunControl& run,
+                  KeepTrace trace) {
     const ThreadLimit threads(limits.threads);
     StagePlan plan(planned_stages(settings), run);
     CarveResult result;
@@ -202,11 +215,15 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
         plan.run("pyramid", [&](const RunControl& r) { return build_pyramid(shell, resolved.pyramid_levels, r); });
     Synthesizer synthesizer(pyramid, input.exemplar, resolved.synthesis);
     plan.run("synthesize", [&](const RunControl& r) { synthesizer.synthesize(r); });
+    if (trace == KeepTrace::kYes) result.trace = trace_of_synthesis(input.exemplar, synthesizer, keep);
 
     StructureLoopResult loop = plan.run("reinforce", [&](const RunControl& r) {
         return structure_loop(shell, input.exemplar, synthesizer, profile, resolved, keep, r);
     });
     note_structure(loop, report);
+    result.stress_mpa = stress_on_voxels(shell, loop.solid, loop.last_scored).voxel_mpa;
+    result.labels = label_patches(shell, synthesizer.frames(), input.exemplar);
+    if (result.trace) result.trace->stress = design_stress(shell, result.trace->first_solid, loop);
     result.reinforced = std::move(loop.forced);
 
     GeodesicLinks links;

@@ -10,6 +10,7 @@
 #include "core/exemplar/exemplar.h"
 #include "core/mesh/region.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/pipeline/carve_trace.h"
 #include "core/pipeline/run_report.h"
 #include "core/pipeline/settings.h"
 #include "core/shell/surface_voxels.h"
@@ -40,8 +41,13 @@ struct CarveResult {
     SolidStates solid;
     std::vector<std::uint8_t> reinforced;  ///< one byte per voxel: forced solid by the structural steps
     std::vector<Rgb8> voxel_colors;        ///< sRGB, one per voxel
+    std::vector<float> stress_mpa;         ///< of the reinforced pattern, one per voxel; see StressField
+    std::vector<std::uint16_t> labels;     ///< one per voxel; see label_patches.h
+    std::optional<CarveTrace> trace;       ///< only if it was asked for
     RunReport report;
 };
+
+enum class KeepTrace { kNo, kYes };
 
 /// Name and number of this version.
 std::string version();
@@ -51,13 +57,14 @@ std::string version();
 /// Promises  each connected component of the input becomes one connected component; the same arguments
 ///           give the same result for any number of threads; regions that are kept stay solid.
 /// Progress  one rising fraction over all stages, ends at 1.
+/// \param trace  whether to keep what a report shows; changes nothing else, costs some 10 bytes per voxel
 /// \throws InvalidInput       the mesh or the picture cannot be used.
 /// \throws InvalidSetting     a region or a name does not exist.
 /// \throws ConstraintsNotMet  settings contradict each other or the model (`resolve_settings.h`).
 /// \throws MemoryLimit        the estimate is over the limit; before anything large is made.
 /// \throws Cancelled          `run` asked to stop.
 CarveResult carve(const CarveInput& input, const Settings& settings, const RunLimits& limits = {},
-                  const RunControl& run = {});
+                  const RunControl& run = {}, KeepTrace trace = KeepTrace::kNo);
 
 /// What `carve` would stumble over or warn about, found without carving; takes seconds at most.
 /// The numbers it would work with are in the report's shell and pattern.

@@ -55,9 +55,11 @@ StructureLoopResult structure_loop(const SurfaceVoxels& shell, const Exemplar& e
     while (true) {
         const RunControl turn = slices.next();
         Clock::time_point start = Clock::now();
-        const ReinforceStep step = optimizer.step(result.solid, turn.slice(0.0, kShareOfStructure));
+        ReinforceStep step = optimizer.step(result.solid, turn.slice(0.0, kShareOfStructure));
         apply(step, result);
         result.records.push_back(step.record);
+        if (result.records.size() == 1) result.first_scored = step.scored;
+        result.last_scored = std::move(step.scored);
         result.seconds_structure += seconds_since(start);
         if (step.done) break;
 

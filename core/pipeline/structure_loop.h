@@ -17,7 +17,8 @@ struct StructureLoopResult {
     SolidStates solid;
     std::vector<std::uint8_t> forced;  ///< one byte per voxel: made solid by the structural steps
     std::vector<ReinforceRecord> records;
-    std::size_t components_before = 0;  ///< pieces of the first synthesis
+    ScoredPaths first_scored, last_scored;  ///< of the first and of the last turn
+    std::size_t components_before = 0;      ///< pieces of the first synthesis
     double seconds_structure = 0.0;
     double seconds_resynthesis = 0.0;
 };

@@ -105,6 +105,19 @@ void ReinforcementTurn::take_stock(const RunControl& run) {
     run.checkpoint("structure", 0.6);
 }
 
+ScoredPaths ReinforcementTurn::scored_paths() const {
+    ScoredPaths scored;
+    scored.first.push_back(0);
+    for (EdgeIndex e = 0; e < states_.size(); ++e) {
+        if (states_[e] != EdgeState::kSolid) continue;
+        const std::span<const VoxelIndex> path = graph_.voxel_path(e);
+        scored.scores_pa.push_back(scores_pa_[e]);
+        scored.voxels.insert(scored.voxels.end(), path.begin(), path.end());
+        scored.first.push_back(static_cast<std::uint32_t>(scored.voxels.size()));
+    }
+    return scored;
+}
+
 std::vector<EdgeIndex> ReinforcementTurn::empty_edges() const {
     std::vector<EdgeIndex> empty;
     for (EdgeIndex e = 0; e < states_.size(); ++e)

@@ -44,6 +44,9 @@ class ReinforcementTurn {
     /// Scores of the pattern as it is now, into the record; the beam model is solved once. To be called first.
     void take_stock(const RunControl& run);
 
+    /// Solid edges with the scores of the last stock-taking.
+    [[nodiscard]] ScoredPaths scored_paths() const;
+
     /// As printed: the edges of highest score that join two pieces, until all are joined.
     void connect_by_score(const RunControl& run);
 

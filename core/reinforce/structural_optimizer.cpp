@@ -141,6 +141,7 @@ struct StructuralOptimizer::Impl::Outcome {
     StressProgress progress;
     std::vector<double> sample_radius;
     std::string stopped_by = "limits met";
+    ScoredPaths scored;
 };
 
 /// The allowable stress; where self-weight is the only load, which never comes near it, a multiple of what half of
@@ -202,6 +203,7 @@ void StructuralOptimizer::Impl::reinforce_as_printed(SolidStates& state, Outcome
     const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
     ReinforcementTurn turn(context, painter, state, outcome.record.iteration, outcome.sample_radius, run);
     turn.take_stock(run);
+    outcome.scored = turn.scored_paths();
     turn.connect_by_score(run);
     turn.stress_as_printed(allowable_pa(), run);
     std::size_t no_budget = std::numeric_limits<std::size_t>::max();
@@ -217,6 +219,7 @@ void StructuralOptimizer::Impl::reinforce(SolidStates& state, Outcome& outcome, 
     const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
     ReinforcementTurn turn(context, painter, state, outcome.record.iteration, outcome.sample_radius, run);
     turn.take_stock(run);
+    outcome.scored = turn.scored_paths();
     if (outcome.frozen_median_pa < 0.0) outcome.frozen_median_pa = turn.record().median_score_pa;
     outcome.progress.take(turn.record());
     const double limit = limit_pa(outcome.frozen_median_pa);
@@ -241,6 +244,7 @@ void StructuralOptimizer::Impl::take_stock(SolidStates& state, Outcome& outcome,
     const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
     ReinforcementTurn turn(context, painter, state, outcome.record.iteration, outcome.sample_radius, run);
     turn.take_stock(run);
+    outcome.scored = turn.scored_paths();
     merge_record(turn.record(), outcome.record);
 }
 
@@ -329,6 +333,7 @@ ReinforceStep StructuralOptimizer::step(const SolidStates& solid, const RunContr
     run.checkpoint("structure", 1.0);
 
     self.commit(solid, outcome, result);
+    result.scored = std::move(outcome.scored);
     return result;
 }
 

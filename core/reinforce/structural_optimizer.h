@@ -54,6 +54,13 @@ struct ReinforceRecord {
         stopped_by;  ///< empty while going on; else "limits met", "budget", "iterations", "no candidate", "no gain"
 };
 
+/// What solid edges of the abstract graph were found to bear, and where they run.
+struct ScoredPaths {
+    std::vector<double> scores_pa;     ///< one per solid edge
+    std::vector<std::uint32_t> first;  ///< compressed rows into `voxels`: one more than edges, or none at all
+    std::vector<VoxelIndex> voxels;    ///< along each edge, from sample to sample
+};
+
 struct ReinforceStep {
     std::vector<VoxelIndex> forced_solid;  ///< newly forced, ascending
     std::vector<VoxelIndex> dropped;       ///< solid voxels of specks too small to print, ascending
@@ -62,6 +69,7 @@ struct ReinforceStep {
     /// piece per component of the input (`pattern_pieces.h`).
     bool done = false;
     ReinforceRecord record;
+    ScoredPaths scored;  ///< what the record's figures of stress are of
 };
 
 /// STRUCTURALOPTIM. Keeps what does not change between turns (G_surface, its components and firm

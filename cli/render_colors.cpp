@@ -1,0 +1,138 @@
+#include "cli/render_colors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/pipeline/stress_scale.h"
+
+namespace fretwork::cli {
+namespace {
+
+constexpr Rgb8 kBridge = {214, 84, 32};
+constexpr Rgb8 kPlain = {196, 199, 204};
+constexpr Rgb8 kNotKnown = {150, 150, 150};
+
+const char* property_of(RenderColor color) {
+    switch (color) {
+        case RenderColor::kStress:
+            return "fw:stress";
+        case RenderColor::kBridges:
+            return "fw:reinforced";
+        default:
+            return "fw:label";
+    }
+}
+
+const VolumetricObject& only_object(const VolumetricFile& file, const std::string& source) {
+    if (file.objects.size() != 1 || file.mesh.parts.size() > 1)
+        throw InvalidInput(fmt::format("{}: found {} objects with voxel data in {} parts, expected a carved 3MF of one",
+                                       source, file.objects.size(), file.mesh.parts.size()));
+    return file.objects.front();
+}
+
+/// Triangles that share an edge, three each; a triangle stands for none at a border.
+std::vector<std::array<std::uint32_t, 3>> neighbors(const TriangleMesh& mesh) {
+    struct Side {
+        std::uint64_t edge;
+        std::uint32_t triangle, side;
+    };
+    std::vector<Side> sides;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const auto [low, high] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+            sides.push_back({std::uint64_t{low} << 32 | high, t, k});
+        }
+    std::ranges::sort(sides, {}, [](const Side& s) { return std::pair(s.edge, s.triangle); });
+    std::vector<std::array<std::uint32_t, 3>> next(mesh.triangles.size());
+    for (std::uint32_t t = 0; t < next.size(); ++t) next[t] = {t, t, t};
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+        if (sides[i].edge != sides[i + 1].edge) continue;
+        next[sides[i].triangle][sides[i].side] = sides[i + 1].triangle;
+        next[sides[i + 1].triangle][sides[i + 1].side] = sides[i].triangle;
+    }
+    return next;
+}
+
+/// Values at the middles of the triangles; where `known` is not above 0 that of the nearest triangle, counted in steps
+/// over edges. Negative where none is near.
+std::vector<double> triangle_values(const TriangleMesh& mesh, const VolumetricObject& object, const char* property,
+                                    const char* known) {
+    std::vector<double> values(mesh.triangles.size(), -1.0);
+    parallel_for(values.size(), 1024, [&](std::size_t t) {
+        const Triangle& corners = mesh.triangles[t];
+        const Vec3 middle =
+            (mesh.positions_mm[corners[0]] + mesh.positions_mm[corners[1]] + mesh.positions_mm[corners[2]]) / 3.0;
+        if (object.property(known, middle).value_or(1.0) > 0.0) values[t] = *object.property(property, middle);
+    });
+    const std::vector<std::array<std::uint32_t, 3>> next = neighbors(mesh);
+    std::vector<std::uint32_t> front;
+    for (std::uint32_t t = 0; t < values.size(); ++t)
+        if (values[t] >= 0.0) front.push_back(t);
+    for (std::size_t i = 0; i < front.size(); ++i)
+        for (const std::uint32_t n : next[front[i]])
+            if (values[n] < 0.0) {
+                values[n] = values[front[i]];
+                front.push_back(n);
+            }
+    return values;
+}
+
+/// Hues by the golden ratio, so that patches with numbers close together look unlike.
+Rgb8 label_color(double label) {
+    if (label <= 0.0) return kNotKnown;
+    const double hue = std::fmod(label * 0.6180339887498949, 1.0);
+    Rgb8 color{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double from = std::abs(std::fmod(hue + static_cast<double>(k) / 3.0, 1.0) * 6.0 - 3.0) - 1.0;
+        color[k] = static_cast<std::uint8_t>(std::lround(255.0 * (0.35 + 0.5 * std::clamp(from, 0.0, 1.0))));
+    }
+    return color;
+}
+
+std::vector<Rgb8> stress_colors(const std::vector<double>& values) {
+    ShellStress stress;
+    stress.after.samples_mpa = {values.empty() ? 0.0 : *std::ranges::max_element(values)};
+    const StressScale scale = stress_scale(stress);
+    std::vector<Rgb8> colors;
+    for (const double mpa : values) colors.push_back(mpa > 0.0 ? stress_color(scale.place(mpa)) : kNotKnown);
+    return colors;
+}
+
+}  // namespace
+
+RenderColor render_color_named(const std::string& name) {
+    const std::map<std::string, RenderColor> known = {{"pattern", RenderColor::kPattern},
+                                                      {"stress", RenderColor::kStress},
+                                                      {"bridges", RenderColor::kBridges},
+                                                      {"labels", RenderColor::kLabels},
+                                                      {"solid", RenderColor::kSolid}};
+    const auto found = known.find(name);
+    if (found == known.end())
+        throw InvalidSetting(fmt::format("--colour {}: expected pattern, stress, bridges, labels or solid", name));
+    return found->second;
+}
+
+std::vector<Rgb8> render_colors(const VolumetricFile& file, RenderColor color, const std::string& source) {
+    const VolumetricObject& object = only_object(file, source);
+    const char* property = property_of(color);
+    const std::vector<std::string> there = object.properties();
+    if (std::ranges::find(there, property) == there.end())
+        throw InvalidInput(fmt::format("{}: found no {} in its voxel data, expected it", source, property));
+    const std::vector<double> values = triangle_values(file.mesh.mesh, object, property,
+                                                       // Labels are everywhere on the shell and nowhere else.
+                                                       color == RenderColor::kStress ? "fw:stress" : "fw:label");
+    if (color == RenderColor::kStress) return stress_colors(values);
+    std::vector<Rgb8> colors;
+    for (const double value : values)
+        colors.push_back(color == RenderColor::kLabels ? label_color(value) : value > 0.5 ? kBridge : kPlain);
+    return colors;
+}
+
+}  // namespace fretwork::cli
