@@ -10,6 +10,7 @@
 #include "cli/files.h"
 #include "cli/make_rule.h"
 #include "cli/pattern_options.h"
+#include "cli/printer_room.h"
 #include "cli/run_options.h"
 #include "cli/scad_model.h"
 #include "cli/slicing.h"
@@ -129,12 +130,14 @@ void print_warnings(const CarveModel& model, const std::vector<RunReport>& repor
 }
 
 void print_checked(const std::string& prefix, const RunReport& report) {
+    const double fraction = report.pattern.solid_fraction;  // of a draft, if there was one
+    const std::string solid = fraction > 0.0 ? fmt::format(", about {:.0f} % solid", 100.0 * fraction) : "";
     fmt::print(
         stderr,
         "fretwork: {}can be carved: {} voxels of {:.3g} mm along the longest side, wall {:.3g} mm, pattern {:.3g} mm "
-        "wide, features and holes from {:.3g} mm, about {:.0f} MB of memory\n",
+        "wide, features from {:.3g} mm, holes from {:.3g} mm{}, about {:.0f} MB of memory\n",
         prefix, report.shell.resolution, report.shell.voxel_mm, report.shell.thickness_mm,
-        report.pattern.exemplar_width_mm, report.mesh.min_feature_mm,
+        report.pattern.exemplar_width_mm, report.mesh.min_feature_mm, report.mesh.min_hole_mm, solid,
         static_cast<double>(report.peak_memory_bytes) / 1e6);
 }
 
@@ -161,8 +164,15 @@ int check(const CarveOptions& options, Interrupt& interrupt) {
     const RunControl run = control_of(options.run, interrupt);
     Opened opened = open(options, run.slice(0.0, 0.2));
     check_package(options, opened.model);
-    const std::vector<RunReport> reports = check_targets(opened.model, opened.request.settings, opened.request.pictures,
-                                                         limits_of(options.run), run.slice(0.2, 1.0));
+    const Settings& settings = opened.request.settings;
+    std::vector<RunReport> reports =
+        check_targets(opened.model, settings, opened.request.pictures, limits_of(options.run), run.slice(0.2, 1.0));
+    for (RunReport& report : reports) {
+        const MeshReport& mesh = report.input.mesh;
+        if (options.slice.empty()) break;
+        std::ranges::copy(printer_warnings(options.slice, mesh.max_mm - mesh.min_mm, settings.fabrication),
+                          std::back_inserter(report.warnings));
+    }
     if (!options.run.quiet) {
         print_warnings(opened.model, reports);
         for (std::size_t i = 0; i < reports.size(); ++i) print_checked(prefix_of(opened.model, i), reports[i]);
