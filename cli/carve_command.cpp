@@ -60,7 +60,7 @@ CarveRequest request_of_scad(const std::string& path, PatternOptions pattern, co
     pattern.parameters_of_model = true;
     ScadModel scad = render_scad(path, scad_options, ScadMarks::kRender, run);
     SpecDocument document;
-    if (scad.spec) document = anchored(path, read_spec_toml(*scad.spec, path));
+    if (scad.spec) document = anchored(path, read_spec_toml(*scad.spec, scad.model.name));
     std::ranges::move(scad.marks, std::back_inserter(document.tables));
     const SpecDocument more = spec_of(pattern);
     document.assignments.insert(document.assignments.end(), more.assignments.begin(), more.assignments.end());
@@ -75,7 +75,7 @@ CarveRequest request_of(const CarveOptions& options, const RunControl& run) {
     const PatternOptions pattern = with_own_flags(options);
     if (options.again) return request_of_package(read_bytes(options.model), options.source, pattern);
     if (!options.source.empty()) throw InvalidSetting("--source goes with --again");
-    if (is_scad(options.model.path)) return request_of_scad(options.model.path, pattern, run);
+    if (is_scad(options.model)) return request_of_scad(options.model.path, pattern, run);
     CarveRequest request;
     request.settings = settings_of(pattern);
     // Before the model is read: it is quick, and most mistakes are there.
