@@ -25,8 +25,9 @@ struct ThreemfEdit {
 
 /// Of a carved object, the content of its `<mesh>`, the mesh's volume data and the object's default colour are
 /// replaced; what the carved mesh needs (see `carved_threemf_writer.h`) is defined before it. The record is added,
-/// or takes the place of that of an earlier run. The picture that stands for the package is replaced by the record's,
-/// if it has one. Of PrusaSlicer's configuration, the runs of triangles of carved objects follow their meshes.
+/// or takes the place of that of an earlier run, whose voxel data go unless something else refers to them. The picture
+/// that stands for the package is replaced by the record's, if it has one. Of PrusaSlicer's configuration, the runs of
+/// triangles of carved objects follow their meshes.
 ///
 /// Everything else stays byte for byte: the other text of the model parts, with attributes and elements that nobody
 /// knows; all other parts, as they are packed; their order. A model part in UTF-16 becomes UTF-8.
