@@ -99,14 +99,16 @@ Opened open(const CarveOptions& options, const RunControl& run) {
     return opened;
 }
 
-/// What a 3MF cannot keep of the objects that are carved; finds out early whether it can be written at all.
-void check_package(const CarveOptions& options, const CarveModel& model) {
-    if (!model.targets.front().key) return;
+/// Opens the package of a 3MF for its carved objects, and tells what cannot be kept of them: found out early whether it
+/// can be written at all. None where the model is no 3MF.
+std::unique_ptr<ThreemfEditor> open_package(const CarveOptions& options, const CarveModel& model) {
+    if (!model.targets.front().key) return nullptr;
     std::vector<threemf::ObjectKey> keys;
     for (const CarveTarget& target : model.targets) keys.push_back(*target.key);
-    const ThreemfEditor editor(model.file.bytes, model.file.name, keys);
-    if (options.run.quiet) return;
-    for (const std::string& warning : editor.warnings()) fmt::print(stderr, "fretwork: warning: {}\n", warning);
+    auto editor = std::make_unique<ThreemfEditor>(model.file.bytes, model.file.name, keys);
+    if (options.run.quiet) return editor;
+    for (const std::string& warning : editor->warnings()) fmt::print(stderr, "fretwork: warning: {}\n", warning);
+    return editor;
 }
 
 void print_paint(const PaintRecord& paint) {
@@ -142,10 +144,12 @@ void print_checked(const std::string& prefix, const RunReport& report) {
 }
 
 void print_done(const std::string& output, const std::string& prefix, const RunReport& report) {
+    // Parts of the model that touch come out as one.
+    const std::size_t pieces = std::min(report.pattern.components_after, report.mesh.report.components);
     fmt::print(stderr, "fretwork: {}: {}{} triangles, {} {}, {:.0f} % solid, stress {}, {:.1f} s\n",
-               output == kStream ? "standard output" : output, prefix, report.mesh.report.triangles,
-               report.pattern.components_after, report.pattern.components_after == 1 ? "piece" : "pieces",
-               100.0 * report.pattern.solid_fraction, report.structure.verdict, report.seconds_total);
+               output == kStream ? "standard output" : output, prefix, report.mesh.report.triangles, pieces,
+               pieces == 1 ? "piece" : "pieces", 100.0 * report.pattern.solid_fraction, report.structure.verdict,
+               report.seconds_total);
 }
 
 bool below_standard(const RunReport& report) {
@@ -163,7 +167,7 @@ void put_summary(const CarveOptions& options, const CarveModel& model, const std
 int check(const CarveOptions& options, Interrupt& interrupt) {
     const RunControl run = control_of(options.run, interrupt);
     Opened opened = open(options, run.slice(0.0, 0.2));
-    check_package(options, opened.model);
+    open_package(options, opened.model);
     const Settings& settings = opened.request.settings;
     std::vector<RunReport> reports =
         check_targets(opened.model, settings, opened.request.pictures, limits_of(options.run), run.slice(0.2, 1.0));
@@ -264,7 +268,7 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
 
     Opened opened = open(options, run.slice(0.0, 0.02));
     const Settings& settings = opened.request.settings;
-    check_package(options, opened.model);
+    const std::unique_ptr<ThreemfEditor> package = open_package(options, opened.model);
     check_paint(options, settings.output);
     std::vector<CarvedTarget> carved =
         carve_targets(opened.model, settings, opened.request.pictures, limits, run.slice(0.02, 0.95));
@@ -275,7 +279,7 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     std::vector<RunReport> reports;
     for (const CarvedTarget& target : carved) reports.push_back(target.report);
     const double written = options.slice.empty() ? 1.0 : 0.96;
-    put_carved(options, {opened.model, carved, settings, pictures}, reports, opened.request.pictures,
+    put_carved(options, {opened.model, carved, settings, pictures, package.get()}, reports, opened.request.pictures,
                run.slice(0.95, written), interrupt);
     slice_result(options, opened.model, reports, run.slice(written, 1.0), interrupt);
     if (!options.run.quiet) {

@@ -33,7 +33,7 @@ struct ThreemfEdit {
 /// knows; all other parts, as they are packed; their order. A model part in UTF-16 becomes UTF-8.
 class ThreemfEditor {
   public:
-    /// Finds the objects that are to be carved. The bytes must outlive it.
+    /// Finds the objects that are to be carved. The bytes must outlive it. Holds the text of their model parts.
     /// \throws InvalidInput  no such object; one whose mesh holds a modifier of PrusaSlicer as well; a model part with
     /// a carved object of over 1 GiB; see ZipReader.
     ThreemfEditor(std::string_view bytes, std::string_view source, const std::vector<threemf::ObjectKey>& carved);

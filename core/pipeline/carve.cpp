@@ -114,7 +114,10 @@ void note_output(const CarvedMesh& carved, const MeshReport& mesh, RunReport& re
     report.mesh.report = mesh;
     report.mesh.islands_removed = carved.islands_removed;
     report.mesh.islands_volume_mm3 = carved.islands_volume_mm3;
-    if (mesh.components != report.shell.components)
+    if (mesh.components < report.shell.components)
+        report.warnings.push_back(fmt::format("{} parts of the model touch each other and came out as {}",
+                                              report.shell.components, mesh.components));
+    if (mesh.components > report.shell.components)
         report.warnings.push_back(
             fmt::format("the carved mesh has {} shells for {} parts of the model: some are cavities", mesh.components,
                         report.shell.components));

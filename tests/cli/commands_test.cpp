@@ -148,6 +148,23 @@ TEST_CASE("cli: check carves nothing and runs none of the long stages", "[cli]")
     CHECK(folder.names() == std::vector<std::string>{"vase.off"});
 }
 
+TEST_CASE("commands: parts that touch come out as one piece, and warning and summary agree on it", "[cli]") {
+    const TemporaryFolder folder;
+    const auto carve_with_gap = [&](double gap_mm) {
+        write_mesh(std::filesystem::path(folder / "boxes.stl"),
+                   {testing::joined(testing::make_box(Vec3(0, 0, 0), Vec3(20, 20, 20)),
+                                    testing::make_box(Vec3(20 + gap_mm, 20 + gap_mm, 0), Vec3(40, 40, 20)))});
+        const ProgramResult run = run_program({"carve", folder / "boxes.stl", "--pattern", "cells", "--resolution",
+                                               "64", "-D", "structure.max_iterations=2", "-o", folder / "out.stl"});
+        CHECK(run.exit_code == 0);
+        return run.err;
+    };
+    const std::string touching = carve_with_gap(0.0), apart = carve_with_gap(2.0);
+    CHECK_THAT(touching, Catch::Contains("2 parts of the model touch each other and came out as 1") &&
+                             Catch::Contains(" 1 piece,"));
+    CHECK_THAT(apart, !Catch::Contains("touch each other") && Catch::Contains(" 2 pieces,"));
+}
+
 TEST_CASE("commands: a check tells within five seconds what a run would come to, and what the printer is too small for",
           "[cli]") {
     const TemporaryFolder folder;
