@@ -10,6 +10,7 @@
 #include "cli/files.h"
 #include "cli/make_rule.h"
 #include "cli/pattern_options.h"
+#include "cli/printer_room.h"
 #include "cli/report_page.h"
 #include "cli/run_options.h"
 #include "cli/scad_model.h"
@@ -60,7 +61,7 @@ CarveRequest request_of_scad(const std::string& path, PatternOptions pattern, co
     pattern.parameters_of_model = true;
     ScadModel scad = render_scad(path, scad_options, ScadMarks::kRender, run);
     SpecDocument document;
-    if (scad.spec) document = anchored(path, read_spec_toml(*scad.spec, path));
+    if (scad.spec) document = anchored(path, read_spec_toml(*scad.spec, scad.model.name));
     std::ranges::move(scad.marks, std::back_inserter(document.tables));
     const SpecDocument more = spec_of(pattern);
     document.assignments.insert(document.assignments.end(), more.assignments.begin(), more.assignments.end());
@@ -75,7 +76,7 @@ CarveRequest request_of(const CarveOptions& options, const RunControl& run) {
     const PatternOptions pattern = with_own_flags(options);
     if (options.again) return request_of_package(read_bytes(options.model), options.source, pattern);
     if (!options.source.empty()) throw InvalidSetting("--source goes with --again");
-    if (is_scad(options.model.path)) return request_of_scad(options.model.path, pattern, run);
+    if (is_scad(options.model)) return request_of_scad(options.model.path, pattern, run);
     CarveRequest request;
     request.settings = settings_of(pattern);
     // Before the model is read: it is quick, and most mistakes are there.
@@ -99,14 +100,16 @@ Opened open(const CarveOptions& options, const RunControl& run) {
     return opened;
 }
 
-/// What a 3MF cannot keep of the objects that are carved; finds out early whether it can be written at all.
-void check_package(const CarveOptions& options, const CarveModel& model) {
-    if (!model.targets.front().key) return;
+/// Opens the package of a 3MF for its carved objects, and tells what cannot be kept of them: found out early whether it
+/// can be written at all. None where the model is no 3MF.
+std::unique_ptr<ThreemfEditor> open_package(const CarveOptions& options, const CarveModel& model) {
+    if (!model.targets.front().key) return nullptr;
     std::vector<threemf::ObjectKey> keys;
     for (const CarveTarget& target : model.targets) keys.push_back(*target.key);
-    const ThreemfEditor editor(model.file.bytes, model.file.name, keys);
-    if (options.run.quiet) return;
-    for (const std::string& warning : editor.warnings()) fmt::print(stderr, "fretwork: warning: {}\n", warning);
+    auto editor = std::make_unique<ThreemfEditor>(model.file.bytes, model.file.name, keys);
+    if (options.run.quiet) return editor;
+    for (const std::string& warning : editor->warnings()) fmt::print(stderr, "fretwork: warning: {}\n", warning);
+    return editor;
 }
 
 void print_paint(const PaintRecord& paint) {
@@ -130,20 +133,24 @@ void print_warnings(const CarveModel& model, const std::vector<RunReport>& repor
 }
 
 void print_checked(const std::string& prefix, const RunReport& report) {
+    const double fraction = report.pattern.solid_fraction;  // of a draft, if there was one
+    const std::string solid = fraction > 0.0 ? fmt::format(", about {:.0f} % solid", 100.0 * fraction) : "";
     fmt::print(
         stderr,
         "fretwork: {}can be carved: {} voxels of {:.3g} mm along the longest side, wall {:.3g} mm, pattern {:.3g} mm "
-        "wide, features and holes from {:.3g} mm, about {:.0f} MB of memory\n",
+        "wide, features from {:.3g} mm, holes from {:.3g} mm{}, about {:.0f} MB of memory\n",
         prefix, report.shell.resolution, report.shell.voxel_mm, report.shell.thickness_mm,
-        report.pattern.exemplar_width_mm, report.mesh.min_feature_mm,
+        report.pattern.exemplar_width_mm, report.mesh.min_feature_mm, report.mesh.min_hole_mm, solid,
         static_cast<double>(report.peak_memory_bytes) / 1e6);
 }
 
 void print_done(const std::string& output, const std::string& prefix, const RunReport& report) {
+    // Parts of the model that touch come out as one.
+    const std::size_t pieces = std::min(report.pattern.components_after, report.mesh.report.components);
     fmt::print(stderr, "fretwork: {}: {}{} triangles, {} {}, {:.0f} % solid, stress {}, {:.1f} s\n",
-               output == kStream ? "standard output" : output, prefix, report.mesh.report.triangles,
-               report.pattern.components_after, report.pattern.components_after == 1 ? "piece" : "pieces",
-               100.0 * report.pattern.solid_fraction, report.structure.verdict, report.seconds_total);
+               output == kStream ? "standard output" : output, prefix, report.mesh.report.triangles, pieces,
+               pieces == 1 ? "piece" : "pieces", 100.0 * report.pattern.solid_fraction, report.structure.verdict,
+               report.seconds_total);
 }
 
 bool below_standard(const RunReport& report) {
@@ -161,9 +168,16 @@ void put_summary(const CarveOptions& options, const CarveModel& model, const std
 int check(const CarveOptions& options, Interrupt& interrupt) {
     const RunControl run = control_of(options.run, interrupt);
     Opened opened = open(options, run.slice(0.0, 0.2));
-    check_package(options, opened.model);
-    const std::vector<RunReport> reports = check_targets(opened.model, opened.request.settings, opened.request.pictures,
-                                                         limits_of(options.run), run.slice(0.2, 1.0));
+    open_package(options, opened.model);
+    const Settings& settings = opened.request.settings;
+    std::vector<RunReport> reports =
+        check_targets(opened.model, settings, opened.request.pictures, limits_of(options.run), run.slice(0.2, 1.0));
+    for (RunReport& report : reports) {
+        const MeshReport& mesh = report.input.mesh;
+        if (options.slice.empty()) break;
+        std::ranges::copy(printer_warnings(options.slice, mesh.max_mm - mesh.min_mm, settings.fabrication),
+                          std::back_inserter(report.warnings));
+    }
     if (!options.run.quiet) {
         print_warnings(opened.model, reports);
         for (std::size_t i = 0; i < reports.size(); ++i) print_checked(prefix_of(opened.model, i), reports[i]);
@@ -257,7 +271,7 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
 
     Opened opened = open(options, run.slice(0.0, 0.02));
     const Settings& settings = opened.request.settings;
-    check_package(options, opened.model);
+    const std::unique_ptr<ThreemfEditor> package = open_package(options, opened.model);
     check_paint(options, settings.output);
     std::vector<CarvedTarget> carved =
         carve_targets(opened.model, settings, opened.request.pictures, limits,
@@ -269,7 +283,7 @@ int carve_command(const CarveOptions& options, Interrupt& interrupt) {
     std::vector<RunReport> reports;
     for (const CarvedTarget& target : carved) reports.push_back(target.report);
     const double written = options.slice.empty() ? 1.0 : 0.96;
-    put_carved(options, {opened.model, carved, settings, pictures}, reports, opened.request.pictures,
+    put_carved(options, {opened.model, carved, settings, pictures, package.get()}, reports, opened.request.pictures,
                run.slice(0.95, written), interrupt);
     slice_result(options, opened.model, reports, run.slice(written, 1.0), interrupt);
     if (!options.run.quiet) {

@@ -7,7 +7,6 @@
 #include "formats/carved_threemf_writer.h"
 #include "formats/png_writer.h"
 #include "formats/spec_toml_writer.h"
-#include "formats/threemf_editor.h"
 #include "formats/threemf_reader.h"
 
 namespace fretwork::cli {
@@ -93,14 +92,10 @@ std::string carved_threemf(const CarvedModel& result, const RunControl& run) {
     PackageRecord record = record_of(result, run.slice(0.0, 0.4));
     if (from_threemf(result)) {
         ThreemfEdit edit;
-        std::vector<threemf::ObjectKey> keys;
-        for (std::size_t i = 0; i < result.carved.size(); ++i) {
-            keys.push_back(*result.model.targets[i].key);
-            edit.objects.push_back({keys.back(), object_of(result, i)});
-        }
+        for (std::size_t i = 0; i < result.carved.size(); ++i)
+            edit.objects.push_back({*result.model.targets[i].key, object_of(result, i)});
         edit.record = std::move(record);
-        const ModelBytes& file = result.model.file;
-        return ThreemfEditor(file.bytes, file.name, keys).write(edit, run.slice(0.4, 1.0));
+        return result.package->write(edit, run.slice(0.4, 1.0));
     }
     CarvedPackage package;
     static_cast<PackageRecord&>(package) = std::move(record);

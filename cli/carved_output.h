@@ -9,6 +9,7 @@
 #include "formats/mesh_file.h"
 #include "formats/report_json.h"
 #include "formats/run_source.h"
+#include "formats/threemf_editor.h"
 
 namespace fretwork::cli {
 
@@ -18,6 +19,7 @@ struct CarvedModel {
     const std::vector<CarvedTarget>& carved;  ///< one per target
     const Settings& settings;
     const std::vector<RunFile>& pictures;
+    const ThreemfEditor* package = nullptr;  ///< where the model is a 3MF, opened for its targets in their order
 };
 
 /// 3MF with colours, voxel data, picture, resolved spec, report and what it takes to run again; the other formats with

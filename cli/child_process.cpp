@@ -69,12 +69,12 @@ std::vector<std::string> environment_with(std::vector<std::string> variables) {
     return variables;
 }
 
-pid_t start(const std::vector<std::string>& arguments, const std::vector<std::string>& environment, const Pipe& out,
-            const Pipe& err) {
+pid_t start(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
+            const std::string& standard_input, const Pipe& out, const Pipe& err) {
     const std::vector<char*> argv = pointers_to(arguments), envp = pointers_to(environment);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, standard_input.c_str(), O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, out.writing(), STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, err.writing(), STDERR_FILENO);
     posix_spawnattr_t attributes;
@@ -119,9 +119,9 @@ void listen(const Pipe& out, const Pipe& err, ProcessResult& result, const RunCo
 }  // namespace
 
 ProcessResult run_process(const std::vector<std::string>& arguments, const RunControl& run,
-                          const std::vector<std::string>& variables) {
+                          const std::vector<std::string>& variables, const std::string& standard_input) {
     Pipe out, err;
-    const pid_t child = start(arguments, environment_with(variables), out, err);
+    const pid_t child = start(arguments, environment_with(variables), standard_input, out, err);
     out.close_writing();
     err.close_writing();
     ProcessResult result;

@@ -14,11 +14,13 @@ struct ProcessResult {
     std::string err;
 };
 
-/// Runs a program found along PATH, without standard input, and waits for it. A stop ends it and its children.
+/// Runs a program found along PATH and waits for it. A stop ends it and its children.
 /// \param arguments  the program first
 /// \param variables  NAME=VALUE of the environment that it sees beside and instead of ours
+/// \param standard_input  a file that it reads from
 /// \throws FileError  it cannot be started. \throws Cancelled
 ProcessResult run_process(const std::vector<std::string>& arguments, const RunControl& run,
-                          const std::vector<std::string>& variables = {});
+                          const std::vector<std::string>& variables = {},
+                          const std::string& standard_input = "/dev/null");
 
 }  // namespace fretwork::cli

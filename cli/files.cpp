@@ -83,13 +83,13 @@ LengthUnit unit_named(const std::string& name) {
 }
 
 ModelBytes read_bytes(const ModelSource& source, const RunControl& run) {
-    if (is_scad(source.path)) return render_scad(source.path, {}, ScadMarks::kLeaveOut, run).model;
+    if (is_scad(source)) return render_scad(source.path, {}, ScadMarks::kLeaveOut, run).model;
     ModelBytes model;
     model.unit = unit_named(source.unit);
     const bool stream = source.path == kStream;
     if (stream && source.format.empty()) throw InvalidSetting("reading from standard input needs --input-format");
     model.format = source.format.empty() ? mesh_format_from_path(source.path) : mesh_format_from_name(source.format);
-    model.name = stream ? "standard input" : source.path;
+    model.name = stream ? kStreamName : source.path;
     model.bytes = stream ? read_stdin() : read_file(fs::path(source.path));
     if (!stream) model.folder = fs::path(source.path).parent_path();
     return model;

@@ -13,6 +13,7 @@
 namespace fretwork::cli {
 
 inline constexpr std::string_view kStream = "-";
+inline constexpr const char* kStreamName = "standard input";  ///< as messages call it
 
 /// Where a model comes from: a path, or `-` with the format named.
 struct ModelSource {

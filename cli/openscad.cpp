@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cli/child_process.h"
+#include "cli/files.h"
 #include "cli/fretwork_scad.h"
 #include "formats/read_file.h"
 
@@ -67,8 +68,16 @@ bool ScadRender::draws_nothing() const {
     return error.find(kEmpty) != error.npos;
 }
 
-OpenScad::OpenScad(std::string path, ScadOptions options) : path_(std::move(path)), options_(std::move(options)) {
+OpenScad::OpenScad(std::string path, const std::string& text, ScadOptions options)
+    : path_(std::move(path)), options_(std::move(options)) {
     std::ofstream(folder_ / "fretwork.scad") << kFretworkScad;
+    if (path_ != kStream) return;
+    standard_input_ = (folder_ / "input.scad").string();
+    std::ofstream(standard_input_) << text;
+}
+
+std::string OpenScad::name() const {
+    return path_ == kStream ? kStreamName : path_;
 }
 
 ScadRender OpenScad::render(const std::string& wanted, const RunControl& run) const {
@@ -83,7 +92,7 @@ ScadRender OpenScad::render(const std::string& wanted, const RunControl& run) co
         line.insert(line.end(), {"-p", options_.parameter_file, "-P", options_.parameter_set});
     line.push_back(path_);
     ScadRender render;
-    hear(run_process(line, run, {library_path(folder_.path())}), render);
+    hear(run_process(line, run, {library_path(folder_.path())}, standard_input_), render);
     if (fs::exists(result, none)) render.off = read_file(result);
     if (render.off.empty() && render.error.empty()) render.error = "made no model";
     if (!fs::exists(rule, none)) return render;

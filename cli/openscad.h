@@ -29,9 +29,11 @@ struct ScadRender {
 /// Renders one file in several ways, each in a run of its own. The library fretwork.scad is there to be used.
 class OpenScad {
   public:
-    OpenScad(std::string path, ScadOptions options);
+    /// \param path  of the file; "-" for `text`, which OpenSCAD then reads as if it lay in the current folder
+    OpenScad(std::string path, const std::string& text, ScadOptions options);
 
-    [[nodiscard]] const std::string& path() const { return path_; }
+    /// As messages name the file.
+    [[nodiscard]] std::string name() const;
 
     /// \param wanted  value of $fretwork: "body", or "KIND:NAME" of a mark, see cli/openscad/fretwork.scad
     /// OpenSCAD reports many errors on the side and ends as if all were well; these are found.
@@ -41,6 +43,7 @@ class OpenScad {
   private:
     std::string path_;
     ScadOptions options_;
+    std::string standard_input_ = "/dev/null";
     ScratchFolder folder_;  ///< for results
 };
 

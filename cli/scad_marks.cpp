@@ -74,11 +74,11 @@ std::vector<SettingTable> render_marks(const OpenScad& scad, const std::vector<S
     if (marks.empty()) return {};
     if (!scad.render("none", run).draws_nothing())
         throw InvalidInput(
-            fmt::format("{}: draws something outside of fretwork_body(); a part with marks stands in it", scad.path()));
+            fmt::format("{}: draws something outside of fretwork_body(); a part with marks stands in it", scad.name()));
     std::vector<SettingTable> tables;
     for (const ScadMark& mark : marks) {
         ScadRender render = scad.render(mark.kind + ":" + mark.name, run);
-        const std::string source = fmt::format("{}: {}", scad.path(), call_of(mark));
+        const std::string source = fmt::format("{}: {}", scad.name(), call_of(mark));
         if (!render.error.empty()) throw InvalidInput(fmt::format("{}: OpenSCAD: {}", source, render.error));
         files.merge(render.files);
         for (SettingTable& table : tables_of(mark, read_mesh(render.off, MeshFormat::kOff, source).mesh)) {

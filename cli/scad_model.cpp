@@ -28,16 +28,32 @@ void check_parameters(const std::string& path, const ScadOptions& options,
                             options.parameter_file, options.parameter_set, entry.key, path));
 }
 
-/// Names of variables set with -D that the file itself does not assign.
-std::vector<std::string> unknown_defines(const std::string& path, const ScadOptions& options,
-                                         const std::set<std::string, std::less<>>& variables) {
-    std::vector<std::string> warnings;
+/// Variables of the file and of what it includes, however deep; what it only uses keeps its own values.
+/// \param read  every file that OpenSCAD has read
+std::set<std::string, std::less<>> variables_with_included(const std::string& text, const std::set<std::string>& read) {
+    auto variables = variables_of_scad(text);
+    std::vector<std::string> texts = {text};
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < texts.size(); ++i)
+        for (const std::string& included : included_by_scad(texts[i]))
+            for (const std::string& file : read) {
+                if (fs::path(file).filename() != fs::path(included).filename() || !seen.insert(file).second) continue;
+                texts.push_back(read_file(fs::path(file)));
+                variables.merge(variables_of_scad(texts.back()));
+            }
+    return variables;
+}
+
+/// OpenSCAD sets a variable that nothing reads without a word.
+void check_defines(const std::string& name, const ScadOptions& options,
+                   const std::set<std::string, std::less<>>& variables) {
     for (const std::string& define : options.defines) {
-        const std::string name = define.substr(0, define.find('='));
-        if (!variables.contains(name) && !name.starts_with('$'))
-            warnings.push_back(fmt::format("-D {}: {} assigns no {} itself", define, path, name));
+        const std::string variable = define.substr(0, define.find('='));
+        if (!variables.contains(variable) && !variable.starts_with('$'))
+            throw InvalidSetting(
+                fmt::format("-D {}: neither {} nor what it includes assigns {}; a key of the spec has a dot", define,
+                            name, variable));
     }
-    return warnings;
 }
 
 std::string relative_name(const std::string& file) {
@@ -48,8 +64,8 @@ std::string relative_name(const std::string& file) {
 
 }  // namespace
 
-bool is_scad(const std::string& path) {
-    return path.ends_with(".scad");
+bool is_scad(const ModelSource& source) {
+    return source.format.empty() ? source.path.ends_with(".scad") : source.format == "scad";
 }
 
 ScadOptions take_scad_options(PatternOptions& pattern) {
@@ -64,23 +80,22 @@ ScadOptions take_scad_options(PatternOptions& pattern) {
 }
 
 ScadModel render_scad(const std::string& path, const ScadOptions& options, ScadMarks marks, const RunControl& run) {
-    const std::string text = read_file(fs::path(path));
-    const auto variables = variables_of_scad(text);
-    check_parameters(path, options, variables);
+    const std::string text = path == kStream ? read_stdin() : read_file(fs::path(path));
+    const OpenScad program(path, text, options);
+    const std::string name = program.name();
+    check_parameters(name, options, variables_of_scad(text));
     ScadModel scad;
-    scad.spec = spec_in_scad(text, path);
-    scad.model.warnings = unknown_defines(path, options, variables);
-
-    const OpenScad program(path, options);
+    scad.spec = spec_in_scad(text, name);
     ScadRender body = program.render("body", run);
-    if (!body.error.empty()) throw InvalidInput(fmt::format("{}: OpenSCAD: {}", path, body.error));
+    if (!body.error.empty()) throw InvalidInput(fmt::format("{}: OpenSCAD: {}", name, body.error));
+    check_defines(name, options, variables_with_included(text, body.files));
     for (const std::string& line : body.lines)
         if (line.starts_with("WARNING:"))
-            scad.model.warnings.push_back(fmt::format("{}: OpenSCAD: {}", path, line.substr(9)));
-    if (marks == ScadMarks::kRender) scad.marks = render_marks(program, marks_in(body.lines, path), body.files, run);
+            scad.model.warnings.push_back(fmt::format("{}: OpenSCAD: {}", name, line.substr(9)));
+    if (marks == ScadMarks::kRender) scad.marks = render_marks(program, marks_in(body.lines, name), body.files, run);
     scad.model.bytes = std::move(body.off);
     scad.model.format = MeshFormat::kOff;
-    scad.model.name = path;
+    scad.model.name = name;
     std::error_code none;
     const std::string itself = fs::weakly_canonical(path, none).string();
     for (const std::string& file : body.files)

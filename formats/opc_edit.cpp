@@ -17,6 +17,13 @@ std::string with_slash(const std::string& target) {
     return target.starts_with('/') ? target : "/" + target;
 }
 
+/// The element with the blank before it and the end of its line, as `with_relations` writes them.
+TextSpan whole_line(std::string_view xml, TextSpan span) {
+    if (span.begin > 0 && xml[span.begin - 1] == ' ') --span.begin;
+    if (span.end < xml.size() && xml[span.end] == '\n') ++span.end;
+    return span;
+}
+
 /// A flat document: a root and its children.
 class FlatXml {
   public:
@@ -131,6 +138,18 @@ std::string with_relations(std::string_view xml, std::span<const Relation> relat
                 xml_attribute("Type", type) + "/>\n";
     }
     return document.with_children(more);
+}
+
+std::string without_relations_to(std::string_view xml, const std::set<std::string>& targets) {
+    std::vector<TextEdit> edits;
+    XmlTagScanner scanner(xml);
+    while (const auto tag = scanner.next()) {
+        if (tag->kind != XmlTag::Kind::kEmpty || tag->local_name() != "Relationship") continue;
+        for (const XmlAttributeSpan& attribute : attribute_spans(xml, *tag))
+            if (attribute.name == "Target" && targets.contains(lower_case(with_slash(xml_unescaped(attribute.raw)))))
+                edits.push_back({whole_line(xml, tag->span), {}});
+    }
+    return edited(xml, std::move(edits));
 }
 
 std::string target_of_relation(std::string_view xml, std::string_view type) {

@@ -1,6 +1,7 @@
 // The XML that holds a package together, changed where something is added and else left as it is.
 #pragma once
 
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,10 @@ using Relation = std::pair<std::string, std::string_view>;
 
 /// A relationships part with these as well, under names of their own; those that are there already are not repeated.
 std::string with_relations(std::string_view xml, std::span<const Relation> relations);
+
+/// A relationships part without those that lead to any of these targets.
+/// \param targets  with a leading slash, in lower case
+std::string without_relations_to(std::string_view xml, const std::set<std::string>& targets);
 
 /// Where the first relationship of a type leads, with a leading slash; empty when there is none.
 std::string target_of_relation(std::string_view xml, std::string_view type);

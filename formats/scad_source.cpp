@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <regex>
 
 #include "formats/parse_error.h"
 
@@ -103,6 +104,15 @@ std::set<std::string, std::less<>> variables_of_scad(std::string_view text) {
     };
     ScadScanner(text).walk([](std::size_t, std::size_t) {}, read);
     return names;
+}
+
+std::vector<std::string> included_by_scad(std::string_view text) {
+    std::string code;
+    ScadScanner(text).walk([&](std::size_t, std::size_t) { code += ' '; }, [&](std::size_t at) { code += text[at]; });
+    const std::regex statement("\\binclude\\s*<([^>]*)>");
+    std::vector<std::string> paths;
+    for (std::sregex_iterator it(code.begin(), code.end(), statement), end; it != end; ++it) paths.push_back((*it)[1]);
+    return paths;
 }
 
 }  // namespace fretwork

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace fretwork {
 
@@ -22,5 +23,8 @@ std::optional<std::string> spec_in_scad(std::string_view text, std::string_view 
 /// Names that the file itself assigns outside of all braces, parentheses and comments: what -D and parameter sets can
 /// change. Files that it includes are not looked into.
 std::set<std::string, std::less<>> variables_of_scad(std::string_view text);
+
+/// Paths of `include <...>` outside of comments and texts, as they are written.
+std::vector<std::string> included_by_scad(std::string_view text);
 
 }  // namespace fretwork

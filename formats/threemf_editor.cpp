@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <map>
+#include <set>
 
 #include "core/base/error.h"
 #include "formats/lower_case.h"
@@ -15,6 +16,7 @@
 #include "formats/threemf_model_edit.h"
 #include "formats/threemf_model_reader.h"
 #include "formats/threemf_names.h"
+#include "formats/threemf_old_voxels.h"
 #include "formats/zip_writer.h"
 
 namespace fretwork {
@@ -31,6 +33,7 @@ constexpr std::uint64_t kMaxSmallPartBytes = 8 << 20;
 struct EditedPart {
     std::string xml;
     ModelLayout layout;  ///< refers to `xml`
+    threemf::OldVoxels old_voxels;
 };
 
 /// What becomes of the parts of an archive: some are replaced, the rest is copied, more follow.
@@ -44,6 +47,9 @@ class PartWriter {
     }
     void put_stored(std::string_view name, std::string bytes) { put_packed(name, {{{std::move(bytes)}, 0, 0}, true}); }
 
+    /// \param names  in lower case; parts that are put all the same are written
+    void drop(const std::set<std::string>& names) { dropped_ = names; }
+
     /// A part as it was; empty when there is none.
     [[nodiscard]] std::string text_of(std::string_view name) const {
         return from_.contains(name) ? xml_as_utf8(from_.read(name, kMaxSmallPartBytes)) : std::string{};
@@ -54,7 +60,8 @@ class PartWriter {
         for (const ZipReader::Entry& entry : from_.entries()) {
             const auto changed = changed_.find(lower_case(entry.name));
             if (changed == changed_.end()) {
-                zip.add_packed(entry.name, from_.read_packed(entry.name));
+                if (!dropped_.contains(lower_case(entry.name)))
+                    zip.add_packed(entry.name, from_.read_packed(entry.name));
                 continue;
             }
             zip.add_packed(entry.name, std::move(changed->second.part));
@@ -79,6 +86,7 @@ class PartWriter {
 
     const ZipReader& from_;
     std::map<std::string, Changed> changed_;
+    std::set<std::string> dropped_;
     std::vector<std::string> order_;
 };
 
@@ -92,6 +100,7 @@ struct ThreemfEditor::Impl {
     std::map<std::string, EditedPart> parts;
     double unit_mm = 1.0;
     std::vector<std::string> warnings;
+    std::set<std::string> old_sheets;  ///< of an earlier carve, in lower case, without the leading slash
 
     Impl(std::string_view bytes, std::string_view from, const std::vector<ObjectKey>& keys)
         : source(from), package(bytes, from), zip(bytes, from), carved(keys) {
@@ -102,6 +111,15 @@ struct ThreemfEditor::Impl {
             find(key);
         }
         look_at_volumes();
+        for (auto& [name, part] : parts) find_old_voxels(name, part);
+    }
+
+    void find_old_voxels(const std::string& name, EditedPart& part) {
+        std::set<threemf::ResourceId> here;
+        for (const ObjectKey& key : carved)
+            if (key.part == name) here.insert(key.id);
+        part.old_voxels = threemf::old_voxels_of(part.xml, part.layout, here);
+        for (const std::string& sheet : part.old_voxels.sheets) old_sheets.insert(lower_case(sheet.substr(1)));
     }
 
     void open_part(const std::string& name) {
@@ -155,8 +173,8 @@ struct ThreemfEditor::Impl {
             ++number;
             const bool taken = std::ranges::any_of(zip.entries(), [&](const ZipReader::Entry& entry) {
                 const std::string name = lower_case(entry.name);
-                return name.starts_with("3d/volumetric/voxels" + suffix + "/") ||
-                       name.starts_with("3d/volumetric/reinforced" + suffix + "/");
+                return !old_sheets.contains(name) && (name.starts_with("3d/volumetric/voxels" + suffix + "/") ||
+                                                      name.starts_with("3d/volumetric/reinforced" + suffix + "/"));
             });
             if (!taken) return suffix;
         }
@@ -189,15 +207,18 @@ class EditRun {
             model.replace_mesh(edit_.objects[i].key.id, texts_[i]);
             add_sheets(texts_[i], sheets);
         }
+        for (const TextSpan& old : part.old_voxels.elements) model.drop(old);
         if (root) {
             model.add_metadata(metadata_of(edit_.record));
             if (painted) add_slicer_versions(part.layout, model);
         }
         writer_.put(name, model.finish().deflated(run_));
-        if (sheets.empty()) return;
+        if (sheets.empty() && part.old_voxels.sheets.empty()) return;
         const std::string relations = relations_part_of(name);
         paths_.push_back("/" + relations);
-        writer_.put(relations, with_relations(writer_.text_of(relations), sheets));
+        std::set<std::string> old;
+        for (const std::string& sheet : part.old_voxels.sheets) old.insert(lower_case(sheet));
+        writer_.put(relations, with_relations(without_relations_to(writer_.text_of(relations), old), sheets));
     }
 
     void write_record(const std::string& package_thumbnail) {
@@ -281,6 +302,7 @@ std::string ThreemfEditor::write(const ThreemfEdit& edit, const RunControl& run)
     if (!std::ranges::equal(edit.objects, impl_->carved, {}, &CarvedReplacement::key))
         throw InvalidInput("write 3mf: found other objects than those that were to be carved");
     EditRun writing(edit, run, impl_->zip);
+    writing.writer().drop(impl_->old_sheets);
     std::size_t number = edit.objects.size() > 1 ? 1 : 0;
     const bool single = edit.objects.size() == 1;
     writing.add_texts([&] { return impl_->free_suffix(number, single); });

@@ -25,14 +25,15 @@ struct ThreemfEdit {
 
 /// Of a carved object, the content of its `<mesh>`, the mesh's volume data and the object's default colour are
 /// replaced; what the carved mesh needs (see `carved_threemf_writer.h`) is defined before it. The record is added,
-/// or takes the place of that of an earlier run. The picture that stands for the package is replaced by the record's,
-/// if it has one. Of PrusaSlicer's configuration, the runs of triangles of carved objects follow their meshes.
+/// or takes the place of that of an earlier run, whose voxel data go unless something else refers to them. The picture
+/// that stands for the package is replaced by the record's, if it has one. Of PrusaSlicer's configuration, the runs of
+/// triangles of carved objects follow their meshes.
 ///
 /// Everything else stays byte for byte: the other text of the model parts, with attributes and elements that nobody
 /// knows; all other parts, as they are packed; their order. A model part in UTF-16 becomes UTF-8.
 class ThreemfEditor {
   public:
-    /// Finds the objects that are to be carved. The bytes must outlive it.
+    /// Finds the objects that are to be carved. The bytes must outlive it. Holds the text of their model parts.
     /// \throws InvalidInput  no such object; one whose mesh holds a modifier of PrusaSlicer as well; a model part with
     /// a carved object of over 1 GiB; see ZipReader.
     ThreemfEditor(std::string_view bytes, std::string_view source, const std::vector<threemf::ObjectKey>& carved);

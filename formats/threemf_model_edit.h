@@ -23,6 +23,9 @@ class ModelEdit {
 
     /// Names of the core specification, or those that start with "fw:" or "slic3rpe:"; one of the same name is
     /// replaced.
+    /// Leaves out what stands there.
+    void drop(const TextSpan& span) { changes_.push_back({span, {}, nullptr, {}}); }
+
     void add_metadata(const std::vector<std::pair<std::string, std::string>>& metadata);
 
     /// Call once, last.

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/enlarge/enlarge_features.h"
 #include "core/mesh/mesh_report.h"
+#include "core/pipeline/foresee.h"
 #include "core/pipeline/intended_use.h"
 #include "core/pipeline/keep_regions.h"
 #include "core/pipeline/label_patches.h"
@@ -115,7 +116,10 @@ void note_output(const CarvedMesh& carved, const MeshReport& mesh, RunReport& re
     report.mesh.report = mesh;
     report.mesh.islands_removed = carved.islands_removed;
     report.mesh.islands_volume_mm3 = carved.islands_volume_mm3;
-    if (mesh.components != report.shell.components)
+    if (mesh.components < report.shell.components)
+        report.warnings.push_back(fmt::format("{} parts of the model touch each other and came out as {}",
+                                              report.shell.components, mesh.components));
+    if (mesh.components > report.shell.components)
         report.warnings.push_back(
             fmt::format("the carved mesh has {} shells for {} parts of the model: some are cavities", mesh.components,
                         report.shell.components));
@@ -261,6 +265,43 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
     return result;
 }
 
+namespace {
+
+/// Of a draft, what a printer would stumble over. It does not hold the promise of least widths, which is left out.
+std::vector<std::string> draft_faults(const CarveResult& draft, const FabricationOptions& fabrication,
+                                      const RunControl& run) {
+    PrintabilitySettings settings{fabrication.layer_height_mm, fabrication.overhang_deg};
+    settings.bodies = draft.report.shell.components;
+    PrintabilityReport found = printability(draft.carved.mesh, settings, run);
+    found.least_solid.reset();
+    std::vector<std::string> sentences = print_faults(found, fabrication.nozzle_mm);
+    std::ranges::copy(print_cautions(found), std::back_inserter(sentences));
+    return sentences;
+}
+
+/// Carves a draft of the run and adds what is wrong with it to the warnings.
+void try_draft(const CarveInput& input, const Settings& settings, const RunLimits& limits, const RunControl& run,
+               RunReport& report) {
+    constexpr std::size_t kMostTriangles = 400'000;
+    if (input.mesh.triangles.size() > kMostTriangles) {
+        report.warnings.push_back(
+            fmt::format("the model has {} triangles, too many for a draft within seconds: strength and supports are "
+                        "not looked at",
+                        input.mesh.triangles.size()));
+        return;
+    }
+    Settings quick = settings;
+    apply_preset(quick, Preset::kDraft);
+    const CarveResult draft = carve(input, quick, limits, run.slice(0.0, 0.9));
+    report.pattern.solid_fraction = draft.report.pattern.solid_fraction;
+    std::vector<std::string> sentences = draft_faults(draft, settings.fabrication, run.slice(0.9, 1.0));
+    for (const std::string& warning : draft.report.warnings)
+        if (std::ranges::find(report.warnings, warning) == report.warnings.end()) sentences.push_back(warning);
+    for (const std::string& sentence : sentences) report.warnings.push_back("a draft: " + sentence);
+}
+
+}  // namespace
+
 RunReport check_carve(const CarveInput& input, const Settings& settings, const RunLimits& limits,
                       const RunControl& run) {
     const ThreadLimit threads(limits.threads);
@@ -268,25 +309,29 @@ RunReport check_carve(const CarveInput& input, const Settings& settings, const R
     const double scale = input_scale(input.mesh, settings.input);
     report.input.scale = scale;
     const PreparedSurface surface =
-        prepare_surface(input.mesh, settings.input, CountSelfIntersections::kYes, run.slice(0.0, 0.8));
+        prepare_surface(input.mesh, settings.input, CountSelfIntersections::kYes, run.slice(0.0, 0.3));
     report.input.mesh = surface.found;
     std::ranges::copy(surface.warnings, std::back_inserter(report.warnings));
+    const ExemplarFacts exemplar = exemplar_facts(input.exemplar, input.exemplar_width_mm);
     const ResolvedSettings resolved =
-        resolve_settings(settings, {longest_side(surface.mesh), surface.open, surface.found.area_mm2},
-                         exemplar_facts(input.exemplar, input.exemplar_width_mm));
+        resolve_settings(settings, {longest_side(surface.mesh), surface.open, surface.found.area_mm2}, exemplar);
     note_resolved(settings, resolved, report);
     check_memory(surface.mesh, resolved, limits.max_memory_bytes);
     report.peak_memory_bytes = estimated_peak_bytes(surface.mesh, resolved);
+    if (resolved.voxelize.halvings == 0)
+        std::ranges::copy(foreseen(resolved, exemplar, settings.fabrication, settings.synthesis.scale),
+                          std::back_inserter(report.warnings));
 
     // A coarse shell is enough to see whether each region holds a part of the surface.
     VoxelizeSettings coarse = resolved.voxelize;
     coarse.resolution = std::min(coarse.resolution, 64);
     coarse.halvings = 0;
-    const SurfaceVoxels shell = voxelize(surface.mesh, coarse, run.slice(0.8, 0.95));
+    const SurfaceVoxels shell = voxelize(surface.mesh, coarse, run.slice(0.3, 0.4));
     report.shell.components = component_count(shell);
     const Settings local = regions_on(surface, {input.mesh.triangles.size(), input.named_triangles}, settings);
     keep_regions(surface.mesh, local);
     intended_use(surface.mesh, shell, local, run);
+    try_draft(input, settings, limits, run.slice(0.4, 1.0), report);
     run.checkpoint("check", 1.0);
     return report;
 }

@@ -66,8 +66,11 @@ std::string version();
 CarveResult carve(const CarveInput& input, const Settings& settings, const RunLimits& limits = {},
                   const RunControl& run = {}, KeepTrace trace = KeepTrace::kNo);
 
-/// What `carve` would stumble over or warn about, found without carving; takes seconds at most.
-/// The numbers it would work with are in the report's shell and pattern.
+/// What `carve` would stumble over or warn about, found without carving: what the numbers tell (`foresee.h`), and what
+/// a draft of the run comes to. The numbers it would work with are in the report's shell and pattern, sentences in its
+/// warnings, where those of the draft begin with "a draft".
+///
+/// Cost  under 5 s on two cores; models of over 400000 triangles go without the draft, and a warning says so.
 /// \throws  as `carve`, except Cancelled within stages it does not run.
 RunReport check_carve(const CarveInput& input, const Settings& settings, const RunLimits& limits = {},
                       const RunControl& run = {});

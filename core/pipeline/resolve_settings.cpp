@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -186,15 +187,18 @@ double input_scale(const TriangleMesh& mesh, const InputOptions& input) {
 }
 
 ExemplarFacts exemplar_facts(const Exemplar& exemplar, std::optional<double> natural_width_mm) {
-    // Of a stroke of half width h, one pixel in h borders on empty.
-    std::size_t solid = 0, border = 0;
+    // Of a stroke of half width h, one pixel in h borders on empty, and the other way round for openings.
+    std::array<std::size_t, 2> count = {0, 0}, border = {0, 0};
     for (std::size_t p = 0; p < exemplar.solid.size(); ++p) {
-        if (!exemplar.solid[p]) continue;
-        ++solid;
-        if (exemplar.feature_distance_px[p] > -1.0F) ++border;
+        const std::size_t kind = exemplar.solid[p] ? 1 : 0;
+        ++count[kind];
+        if (std::abs(exemplar.feature_distance_px[p]) < 1.0F) ++border[kind];
     }
-    const double half = static_cast<double>(solid) / static_cast<double>(std::max<std::size_t>(border, 1));
-    return {exemplar.width, std::max(half, 0.5), natural_width_mm};
+    const auto half = [&](std::size_t kind) {
+        return std::max(0.5,
+                        static_cast<double>(count[kind]) / static_cast<double>(std::max<std::size_t>(border[kind], 1)));
+    };
+    return {exemplar.width, half(1), natural_width_mm, half(0)};
 }
 
 Material material_of(const StructureOptions& o) {

@@ -41,6 +41,7 @@ struct ExemplarFacts {
     int width_px = 0;
     double half_stroke_px = 1.0;             ///< half the width of a typical solid stroke
     std::optional<double> natural_width_mm;  ///< of a built-in pattern
+    double half_gap_px = 1.0;                ///< half the width of a typical opening
 };
 
 /// \param natural_width_mm  see ExemplarFacts

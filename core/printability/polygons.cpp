@@ -73,6 +73,17 @@ Polygons offset(const Polygons& area, double mm) {
     return result;
 }
 
+Polygons with_gaps_closed(const Polygons& area, double mm) {
+    constexpr double kMiterLimit = 3.0;
+    Polygons result = area;
+    for (const double by : {0.5 * mm, -0.5 * mm}) {
+        ClipperOffset step(kMiterLimit);
+        step.AddPaths(result, jtMiter, etClosedPolygon);
+        step.Execute(result, by * kUnitsPerMm);
+    }
+    return result;
+}
+
 std::vector<Part> parts_of(const Polygons& area) {
     Clipper clipper;
     clipper.AddPaths(area, ptSubject, true);

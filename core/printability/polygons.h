@@ -36,6 +36,8 @@ Polygons difference(const Polygons& a, const Polygons& b);
 Polygons solid_of(const Polygons& loops);
 /// Grown with round corners, or shrunk by a negative distance.
 Polygons offset(const Polygons& area, double mm);
+/// Parts less than `mm` apart become one, corners stay sharp.
+Polygons with_gaps_closed(const Polygons& area, double mm);
 std::vector<Part> parts_of(const Polygons& area);
 bool contains(const Part& part, const ClipperLib::IntPoint& p);
 

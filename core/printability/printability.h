@@ -33,7 +33,9 @@ struct PrintabilityReport {
     double first_layer_contact_mm2 = 0.0;  ///< what stands on the bed
     double material_mm3 = 0.0;
 
-    std::size_t islands = 0;  ///< parts of a layer with nothing below them, above the first layer
+    /// Parts of a layer with nothing below them, above the first layer. Parts less than 0.1 mm apart are one, as
+    /// slicers see them.
+    std::size_t islands = 0;
     std::vector<std::size_t> islands_per_layer;
     std::vector<PrintPlace> island_places;  ///< the largest, at most kMostPlaces; size is the root of the area
     double overhang_area_mm2 = 0.0;         ///< further out than `overhang_deg` allows, summed over layers

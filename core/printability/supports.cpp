@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "core/mesh/triangle_math.h"
@@ -14,6 +13,7 @@ namespace {
 using Edge = std::pair<Vec2, Vec2>;
 
 constexpr double kLeastIslandMm2 = 0.01;  // less is rounding
+constexpr double kClosedGapMm = 0.098;    // slicers close narrower gaps before they draw lines
 constexpr double kLeastHangingMm = 0.2;   // narrower rims are part of any slope
 constexpr int kSamplesAcross = 40;
 constexpr double kLeastSpacingMm = 0.1;
@@ -68,18 +68,28 @@ bool held_from_both_sides(const std::vector<Edge>& edges, const Vec2& p, double 
 /// The layer's parts, and what each of them rests on.
 class Rest {
   public:
-    Rest(const Layer& layer, const Layer& below) : parts_(parts_of(layer.outline)), edges_(parts_.size()) {
-        for (const Polygon& border : intersection(layer.outline, below.outline))
-            if (const auto part = part_with(border.front())) add_edges(border, edges_[*part]);
+    Rest(const Layer& layer, const Layer& below) {
+        const Polygons closed = with_gaps_closed(layer.outline, kClosedGapMm);
+        parts_ = parts_of(closed);
+        edges_.resize(parts_.size());
+        for (const Polygon& border : intersection(closed, below.outline))
+            add_edges(border, edges_[part_at(border.front())]);
     }
 
     [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
     [[nodiscard]] const std::vector<Edge>& support_of(std::size_t part) const { return edges_[part]; }
 
-    [[nodiscard]] std::optional<std::size_t> part_with(const ClipperLib::IntPoint& p) const {
+    /// The part that holds the point, or the nearest: where borders cross, the point is rounded and may lie a hair
+    /// outside of the part it belongs to.
+    [[nodiscard]] std::size_t part_at(const ClipperLib::IntPoint& p) const {
         for (std::size_t i = 0; i < parts_.size(); ++i)
             if (contains(parts_[i], p)) return i;
-        return std::nullopt;
+        const auto distance = [&](const Part& part) {
+            std::vector<Edge> edges;
+            for (const Polygon& border : part.borders) add_edges(border, edges);
+            return distance_to(edges, mm_of(p));
+        };
+        return static_cast<std::size_t>(std::ranges::min_element(parts_, {}, distance) - parts_.begin());
     }
 
   private:
@@ -125,8 +135,8 @@ LayerSupports look_below(const Layer& layer, const Layer& below, double reach_mm
     }
     const Polygons wide = offset(offset(over, -kLeastHangingMm / 2), kLeastHangingMm / 2);
     for (const Part& hanging : parts_of(wide)) {
-        const auto part = rest.part_with(hanging.borders.front().front());
-        if (part && !rest.support_of(*part).empty()) measure(hanging, rest.support_of(*part), layer.middle_mm, found);
+        const std::vector<Edge>& support = rest.support_of(rest.part_at(hanging.borders.front().front()));
+        if (!support.empty()) measure(hanging, support, layer.middle_mm, found);
     }
     return found;
 }

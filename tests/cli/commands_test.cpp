@@ -1,5 +1,6 @@
 #include <signal.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -145,6 +146,55 @@ TEST_CASE("cli: check carves nothing and runs none of the long stages", "[cli]")
     CHECK(Json::parse(result.out)["shell"]["resolution"] == 256);
     CHECK(result.err.find("can be carved") != std::string::npos);
     CHECK(folder.names() == std::vector<std::string>{"vase.off"});
+}
+
+TEST_CASE("commands: parts that touch come out as one piece, and warning and summary agree on it", "[cli]") {
+    const TemporaryFolder folder;
+    const auto carve_with_gap = [&](double gap_mm) {
+        write_mesh(std::filesystem::path(folder / "boxes.stl"),
+                   {testing::joined(testing::make_box(Vec3(0, 0, 0), Vec3(20, 20, 20)),
+                                    testing::make_box(Vec3(20 + gap_mm, 20 + gap_mm, 0), Vec3(40, 40, 20)))});
+        const ProgramResult run = run_program({"carve", folder / "boxes.stl", "--pattern", "cells", "--resolution",
+                                               "64", "-D", "structure.max_iterations=2", "-o", folder / "out.stl"});
+        CHECK(run.exit_code == 0);
+        return run.err;
+    };
+    const std::string touching = carve_with_gap(0.0), apart = carve_with_gap(2.0);
+    CHECK_THAT(touching, Catch::Contains("2 parts of the model touch each other and came out as 1") &&
+                             Catch::Contains(" 1 piece,"));
+    CHECK_THAT(apart, !Catch::Contains("touch each other") && Catch::Contains(" 2 pieces,"));
+}
+
+TEST_CASE("commands: a check tells within five seconds what a run would come to, and what the printer is too small for",
+          "[cli]") {
+    const TemporaryFolder folder;
+    write_mesh(std::filesystem::path(folder / "vase.off"), {testing::make_vase(60.0)});
+    const auto profile = [&](const std::string& bed) {
+        spit(folder / "printer.ini", "bed_shape = 0x0," + bed + "x0," + bed +
+                                         "x50,0x50\nmax_print_height = 300\n"
+                                         "nozzle_diameter = 0.4,0.4\n");
+        return folder / "printer.ini";
+    };
+    const auto check = [&](const std::string& bed, const std::string& size_mm) {
+        const auto start = std::chrono::steady_clock::now();
+        const ProgramResult run = run_program({"carve", folder / "vase.off", "--pattern", "cells", "--size-mm", size_mm,
+                                               "--check", "--slice", profile(bed), "--summary", "-"});
+        CAPTURE(run.err);
+        CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
+        REQUIRE(run.exit_code == 0);
+        return nlohmann::json::parse(run.out);
+    };
+    const auto says = [](const nlohmann::json& report, const std::string& what) {
+        return std::ranges::any_of(report["warnings"], [&](const nlohmann::json& w) {
+            return w.get<std::string>().find(what) != std::string::npos;
+        });
+    };
+    const auto fits = check("50", "60");
+    CHECK_FALSE(says(fits, "printer"));
+    CHECK(fits["pattern"]["solid_fraction"].get<double>() > 0.2);
+    CHECK(fits["pattern"]["solid_fraction"].get<double>() < 0.95);
+    CHECK(says(check("20", "60"), "--size-mm"));
+    CHECK(says(check("20", "60"), "reaches 20 x 50 x 300 mm"));
 }
 
 TEST_CASE("cli: an interrupted run exits with 130 and leaves nothing", "[cli][cancel]") {

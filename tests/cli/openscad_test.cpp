@@ -122,15 +122,6 @@ TEST_CASE("openscad: what OpenSCAD warns of is passed on, and other commands rea
     CHECK(report_mesh(read_mesh(std::filesystem::path(folder / "part.stl")).mesh).max_mm == Vec3(20, 30, 40));
 }
 
-/// A plate that stands, with marks on it.
-const std::string kMarked =
-    "use <fretwork.scad>\n"
-    "fretwork_body() cube([60, 8, 60]);\n"
-    "fretwork_keep(\"foot\") translate([-1, -1, -1]) cube([62, 10, 13]);\n"
-    "fretwork_keep(\"hole\") translate([30, -1, 30]) rotate([-90, 0, 0]) cylinder(r = 9, h = 10, $fn = 32);\n"
-    "fretwork_load(\"top\", force_n = [0, 0, -25.5], case = \"press\") translate([0, 0, 55]) cube([60, 8, 9]);\n"
-    "fretwork_fixture() translate([0, 0, -2]) cube([60, 8, 2]);\n";
-
 const std::vector<std::string> kQuick = {
     "--pattern", "hexagons", "--resolution", "48", "-D", "structure.max_iterations=2", "--quiet"};
 
@@ -140,6 +131,63 @@ ProgramResult carve_quickly(const std::string& part, std::vector<std::string> mo
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_program(arguments);
 }
+
+TEST_CASE("openscad: -D may name what an included file assigns, and nothing that none does",
+          "[cli][programs][errors]") {
+    if (openscad_is_missing()) return;
+    const TemporaryFolder folder;
+    spit(folder / "deep.scad", "wide = 20;\n");
+    spit(folder / "sizes.scad", "include <deep.scad>\nlong = 30;\n");
+    spit(folder / "tools.scad", "high = 9;\nfunction tall() = 40;\n");
+    spit(folder / "part.scad", "include <sizes.scad>\nuse <tools.scad>\ncube([wide, long, tall()]);\n");
+    const auto carved = [&](const std::string& define) {
+        return carve_quickly(folder / "part.scad", {"-D", define, "--width-mm", "10", "-o", folder / "out.stl"});
+    };
+    const ProgramResult result = carved("wide=25");
+    CAPTURE(result.err);
+    REQUIRE(result.exit_code == 0);
+    CHECK(result.err.empty());
+    const MeshReport mesh = report_mesh(read_mesh(std::filesystem::path(folder / "out.stl")).mesh);
+    CHECK(mesh.max_mm[0] - mesh.min_mm[0] == Approx(25.0).margin(kSlackMm));
+    for (const std::string define : {"wied=25", "high=25"}) {
+        const ProgramResult unknown = carved(define);
+        CHECK(unknown.exit_code == 1);
+        CHECK_THAT(unknown.err, Catch::Contains(define));
+    }
+}
+
+TEST_CASE("openscad: a part may come from standard input", "[cli][programs]") {
+    if (openscad_is_missing()) return;
+    const TemporaryFolder folder;
+    const std::string part =
+        "/* fretwork\n[exemplar]\npattern = \"hexagons\"\nwidth_mm = 10\n[shell]\nresolution = 48\n"
+        "[structure]\nmax_iterations = 2\n*/\nsize = 20;\ncube(size);\n";
+    spit(folder / "part.scad", part);
+    const auto carve = [&](const std::string& in, std::vector<std::string> more) {
+        std::vector<std::string> line = {"carve",       in,   "-D", "size=24",         "--quiet",
+                                         "--no-source", "-o", "-",  "--export-format", "stl"};
+        line.insert(line.end(), more.begin(), more.end());
+        return run_program(line, in == "-" ? part : "");
+    };
+    const ProgramResult file = carve(folder / "part.scad", {}), stream = carve("-", {"--input-format", "scad"});
+    CAPTURE(file.err, stream.err);
+    REQUIRE(file.exit_code == 0);
+    REQUIRE(stream.exit_code == 0);
+    CHECK(file.out.size() > 10000);
+    CHECK(stream.out == file.out);
+    const ProgramResult broken = run_program({"carve", "-", "--input-format", "scad", "-o", folder / "x.stl"}, "cube(");
+    CHECK(broken.exit_code == 2);
+    CHECK_THAT(broken.err, Catch::Contains("standard input"));
+}
+
+/// A plate that stands, with marks on it.
+const std::string kMarked =
+    "use <fretwork.scad>\n"
+    "fretwork_body() cube([60, 8, 60]);\n"
+    "fretwork_keep(\"foot\") translate([-1, -1, -1]) cube([62, 10, 13]);\n"
+    "fretwork_keep(\"hole\") translate([30, -1, 30]) rotate([-90, 0, 0]) cylinder(r = 9, h = 10, $fn = 32);\n"
+    "fretwork_load(\"top\", force_n = [0, 0, -25.5], case = \"press\") translate([0, 0, 55]) cube([60, 8, 9]);\n"
+    "fretwork_fixture() translate([0, 0, -2]) cube([60, 8, 2]);\n";
 
 TEST_CASE("openscad: modules of fretwork.scad mark what is kept, pushed and held", "[cli][programs]") {
     if (openscad_is_missing()) return;

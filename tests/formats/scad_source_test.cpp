@@ -46,5 +46,12 @@ TEST_CASE("scad: variables are what the file assigns on its own level", "[format
     CHECK(variables_of_scad("u = v <= w ? 1 : 2; x = y != z;") == Names{"u", "x"});
 }
 
+TEST_CASE("scad: what a file includes, but not what it uses or only mentions", "[formats]") {
+    CHECK(included_by_scad(
+              "include <a.scad>\nuse <b.scad>\n// include <c.scad>\n/* include <d.scad> */include\n<e/f.scad>;"
+              "x = \"include <g.scad>\"; myinclude <h.scad>") == std::vector<std::string>{"a.scad", "e/f.scad"});
+    CHECK(included_by_scad("include <open").empty());
+}
+
 }  // namespace
 }  // namespace fretwork

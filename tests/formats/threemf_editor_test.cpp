@@ -187,10 +187,41 @@ TEST_CASE("3mf editor: an object carved before is carved again without a clash",
     const Carving carving;
     const std::string once = carving.of(make_project(), {{kRoot, 5}}), twice = carving.of(once, {{kRoot, 5}});
     const std::string xml = part_of(twice, kRoot);
-    CHECK_THAT(xml, Catch::Contains("/3D/volumetric/voxels1/") && Catch::Contains("v:volumeid=\"69\"") &&
-                        !Catch::Contains("v:volumeid=\"65\"") && Catch::Contains("recommendedextensions=\"x m2 v\""));
+    CHECK_THAT(xml, Catch::Contains("v:volumeid=\"69\"") && !Catch::Contains("v:volumeid=\"65\"") &&
+                        Catch::Contains("recommendedextensions=\"x m2 v\""));
+    // The stack of the first carve is gone, and the second has its name.
+    const std::size_t stack = xml.find("<v:image3d");
+    CHECK(stack != xml.npos);
+    CHECK(xml.find("<v:image3d", stack + 1) == xml.npos);
+    CHECK(ZipReader(twice, "p").entries().size() == ZipReader(once, "p").entries().size());
+    CHECK_THAT(xml, Catch::Contains("/3D/volumetric/voxels/") && !Catch::Contains("/3D/volumetric/voxels1/"));
+    CHECK(part_of(twice, "3D/_rels/3dmodel.model.rels").size() == part_of(once, "3D/_rels/3dmodel.model.rels").size());
     CHECK(read_volumetric_threemf(twice, "p").size() == 1);
     CHECK(volume_mm3(read_threemf(twice, "p").mesh) == Approx(volume_mm3(read_threemf(once, "p").mesh)));
+}
+
+TEST_CASE("3mf editor: voxel data that others use, or that are not ours, stay in an object carved again",
+          "[formats][threemf][lossless]") {
+    const Carving carving;
+    const std::string once = carving.of(make_project(), {{kRoot, 5}});
+    /// Image stacks after a second carve, with `what` written behind the first `where` that follows `from` in between.
+    const auto stacks_after = [&](const std::string& from, const std::string& where, const std::string& what) {
+        Parts parts;
+        const ZipReader zip(once, "p");
+        for (const auto& entry : zip.entries()) parts.emplace_back(entry.name, part_of(once, entry.name));
+        std::string& xml = std::ranges::find(parts, kRoot, &Parts::value_type::first)->second;
+        const std::size_t at = xml.find(where, xml.find(from));
+        REQUIRE(at != xml.npos);
+        xml.insert(at + where.size(), what);
+        const std::string twice = part_of(carving.of(testing::make_zip(parts), {{kRoot, 5}}), kRoot);
+        std::size_t stacks = 0;
+        for (std::size_t i = twice.find("<v:image3d"); i != twice.npos; i = twice.find("<v:image3d", i + 1)) ++stacks;
+        return stacks;
+    };
+    CHECK(stacks_after("<v:image3d", "<v:image3d", "") == 1);
+    CHECK(stacks_after("name=\"spare\"", "<mesh", " v:volumeid=\"65\"") == 2);   // another object has them too
+    CHECK(stacks_after("<v:volumedata", "name=\"fw:", "none\" xname=\"") == 1);  // still a property of ours
+    CHECK(stacks_after("<v:imagesheet", "/3D/volumetric/", "others/") == 2);     // a stack that is not where ours are
 }
 
 TEST_CASE("3mf editor: prefixes, units and encodings of the part are kept to", "[formats][threemf]") {

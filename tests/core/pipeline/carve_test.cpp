@@ -225,6 +225,20 @@ TEST_CASE("carve: a check tells the numbers of the run", "[pipeline]") {
     CHECK(checked.shell.components == carved.shell.components);
     CHECK(checked.input.mesh.triangles == carved.input.mesh.triangles);
     CHECK(checked.settings.size() == carved.settings.size());
+    // A draft has looked at how much stays solid.
+    CHECK(checked.pattern.solid_fraction == Approx(carved.pattern.solid_fraction).margin(0.15));
+}
+
+TEST_CASE("carve: a check foresees what the draft of a run finds", "[pipeline]") {
+    const CarveInput input = input_for(small_vase(), "cells");
+    const auto told = [&](const Settings& settings, const std::string& what) {
+        const std::vector<std::string> warnings = check_carve(input, settings).warnings;
+        return std::ranges::any_of(warnings, [&](const std::string& w) { return w.find(what) != w.npos; });
+    };
+    CHECK_FALSE(told(quick(), "allowable stress"));
+    Settings weak = quick();
+    weak.structure.strength_mpa = 0.01;
+    CHECK(told(weak, "a draft: stress of"));
 }
 
 }  // namespace

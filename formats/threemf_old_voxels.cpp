@@ -1,0 +1,143 @@
+#include "formats/threemf_old_voxels.h"
+
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <utility>
+
+#include "formats/text_scanner.h"
+#include "formats/threemf_names.h"
+
+namespace fretwork::threemf {
+namespace {
+
+struct Resource {
+    std::string name;
+    TextSpan span;
+    bool own = false;  ///< volume data with a property of ours
+    std::vector<std::string> sheets;
+};
+
+ResourceId id_of(std::string_view raw) {
+    std::int64_t id = 0;
+    return parse_integer(xml_unescaped(raw), id) && id > 0 ? static_cast<ResourceId>(id) : 0;
+}
+
+std::string_view local_name(std::string_view name) {
+    return name.substr(name.find(':') == name.npos ? 0 : name.find(':') + 1);
+}
+
+/// Resources by number, and who refers to whom.
+class ReferenceScanner {
+  public:
+    ReferenceScanner(std::string_view xml, const ModelLayout& layout) : xml_(xml), layout_(layout) {}
+
+    void scan() {
+        XmlTagScanner scanner(xml_);
+        std::size_t depth = 0;
+        while (const auto tag = scanner.next()) {
+            if (tag->kind != XmlTag::Kind::kEnd) enter(*tag, ++depth);
+            if (tag->kind == XmlTag::Kind::kStart) continue;
+            if (depth-- == kResourceDepth && resources_.contains(current_)) close(tag->span.end);
+        }
+    }
+
+    [[nodiscard]] const std::map<ResourceId, Resource>& resources() const { return resources_; }
+    [[nodiscard]] const std::set<std::pair<ResourceId, ResourceId>>& references() const { return references_; }
+    [[nodiscard]] bool implicit() const { return implicit_; }
+
+  private:
+    static constexpr std::size_t kResourceDepth = 3;
+
+    void enter(const XmlTag& tag, std::size_t depth) {
+        const std::string_view name = tag.local_name();
+        if (name == "vertex" || name == "triangle") return;
+        if (name == "implicitfunction") implicit_ = true;
+        const std::vector<XmlAttributeSpan> attributes = attribute_spans(xml_, tag);
+        if (depth == kResourceDepth) open(tag, attributes);
+        for (const XmlAttributeSpan& attribute : attributes) {
+            const std::string_view what = local_name(attribute.name);
+            if (what == "functionid" || what == "image3did" || what == "volumeid")
+                references_.emplace(current_, id_of(attribute.raw));
+            else if (name == "imagesheet" && what == "path")
+                resources_[current_].sheets.push_back(xml_unescaped(attribute.raw));
+            else if (name == "property" && what == "name" && is_ours(xml_unescaped(attribute.raw)))
+                resources_[current_].own = true;
+        }
+    }
+
+    void open(const XmlTag& tag, const std::vector<XmlAttributeSpan>& attributes) {
+        current_ = 0;
+        for (const XmlAttributeSpan& attribute : attributes)
+            if (attribute.name == "id") current_ = id_of(attribute.raw);
+        resources_[current_].name = tag.local_name();
+        resources_[current_].span = tag.span;
+    }
+
+    void close(std::size_t end) {
+        if (end < xml_.size() && xml_[end] == '\n') ++end;
+        resources_[current_].span.end = end;
+        current_ = 0;
+    }
+
+    [[nodiscard]] bool is_ours(const std::string& property) const {
+        const auto space = layout_.declared.find(property.substr(0, std::min(property.find(':'), property.size())));
+        return space != layout_.declared.end() && space->second == kFretwork;
+    }
+
+    std::string_view xml_;
+    const ModelLayout& layout_;
+    std::map<ResourceId, Resource> resources_;
+    std::set<std::pair<ResourceId, ResourceId>> references_;
+    ResourceId current_ = 0;  ///< the resource in hand
+    bool implicit_ = false;
+};
+
+bool lies_where_ours_do(const Resource& stack) {
+    const std::regex ours("/3D/volumetric/(voxels|reinforced)[0-9]*/[^/]*", std::regex::icase);
+    return std::ranges::all_of(stack.sheets, [&](const std::string& path) { return std::regex_match(path, ours); });
+}
+
+/// Volume data of the carved objects and what they refer to, as far as it is ours.
+std::set<ResourceId> ours_of(const ReferenceScanner& scanner, const std::set<ResourceId>& carved) {
+    std::set<ResourceId> ours = carved;
+    const auto follow = [&](std::string_view name, const auto& is_own) {
+        for (const auto& [from, to] : scanner.references()) {
+            const auto found = scanner.resources().find(to);
+            if (found != scanner.resources().end() && ours.contains(from) && found->second.name == name &&
+                is_own(found->second))
+                ours.insert(to);
+        }
+    };
+    follow("volumedata", [](const Resource& volume) { return volume.own; });
+    follow("functionfromimage3d", [](const Resource&) { return true; });
+    follow("image3d", lies_where_ours_do);
+    return ours;
+}
+
+}  // namespace
+
+OldVoxels old_voxels_of(std::string_view xml, const ModelLayout& layout, const std::set<ResourceId>& carved) {
+    OldVoxels old;
+    if (std::ranges::none_of(carved, [&](ResourceId id) { return layout.objects.at(id).volume.has_value(); }))
+        return old;
+    ReferenceScanner scanner(xml, layout);
+    scanner.scan();
+    if (scanner.implicit()) return old;
+    std::set<ResourceId> dropped = ours_of(scanner, carved);
+    // Whatever something that stays refers to stays too, and what that refers to.
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const auto& [from, to] : scanner.references())
+            if (!dropped.contains(from) && !carved.contains(to) && dropped.erase(to) > 0) changed = true;
+    }
+    for (const ResourceId id : dropped) {
+        if (carved.contains(id)) continue;
+        const Resource& resource = scanner.resources().at(id);
+        old.elements.push_back(resource.span);
+        old.sheets.insert(old.sheets.end(), resource.sheets.begin(), resource.sheets.end());
+    }
+    return old;
+}
+
+}  // namespace fretwork::threemf
