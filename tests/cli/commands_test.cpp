@@ -1,4 +1,5 @@
 #include <signal.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -133,15 +134,11 @@ TEST_CASE("cli: carve writes summary, preview and dependencies", "[cli]") {
     CHECK(last == 1.0);
 }
 
-TEST_CASE("cli: check carves nothing and runs none of the long stages", "[cli]") {
+TEST_CASE("cli: check writes nothing and tells the numbers of the full run", "[cli]") {
     const TemporaryFolder folder;
     spit(folder / "vase.off", vase_off());
     const ProgramResult result = run_program(
         {"carve", folder / "vase.off", "--pattern", "cells", "--check", "--summary", "-", "--progress", "json"});
-    for (const char* stage : {"pyramid", "synthesize", "reinforce", "enlarge", "solidify"}) {
-        CAPTURE(stage);
-        CHECK(result.err.find(stage) == std::string::npos);
-    }
     CHECK(result.exit_code == 0);
     CHECK(Json::parse(result.out)["shell"]["resolution"] == 256);
     CHECK(result.err.find("can be carved") != std::string::npos);
@@ -165,6 +162,16 @@ TEST_CASE("commands: parts that touch come out as one piece, and warning and sum
     CHECK_THAT(apart, !Catch::Contains("touch each other") && Catch::Contains(" 2 pieces,"));
 }
 
+/// That all programs run so far have used.
+double child_cpu_seconds() {
+    rusage used{};
+    ::getrusage(RUSAGE_CHILDREN, &used);
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
 TEST_CASE("commands: a check tells within five seconds what a run would come to, and what the printer is too small for",
           "[cli]") {
     const TemporaryFolder folder;
@@ -176,11 +183,12 @@ TEST_CASE("commands: a check tells within five seconds what a run would come to,
         return folder / "printer.ini";
     };
     const auto check = [&](const std::string& bed, const std::string& size_mm) {
-        const auto start = std::chrono::steady_clock::now();
+        const double before = child_cpu_seconds();
         const ProgramResult run = run_program({"carve", folder / "vase.off", "--pattern", "cells", "--size-mm", size_mm,
                                                "--check", "--slice", profile(bed), "--summary", "-"});
         CAPTURE(run.err);
-        CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
+        // Of the processor, so that the test holds where others use it too; on a free one it takes no longer.
+        CHECK(child_cpu_seconds() - before < 5.0);
         REQUIRE(run.exit_code == 0);
         return nlohmann::json::parse(run.out);
     };
