@@ -13,16 +13,29 @@
 namespace fretwork::cli {
 namespace {
 
+/// A file that has to be the one that was read then.
+std::string same_file(const std::string& path, const RunFile& then, std::string_view what) {
+    std::string bytes = read_file(std::filesystem::path(path));
+    if (const std::string found = run_file(path, bytes, false).sha256; found != then.sha256)
+        throw InvalidInput(fmt::format("{}: found SHA-256 {}, expected {}, {}", path, found, what, then.sha256));
+    return bytes;
+}
+
+/// Materials of an OBJ that the package only names lie beside the model that `source` names.
+std::vector<RunFile> with_bytes(std::vector<RunFile> materials, const std::string& source) {
+    for (RunFile& file : materials)
+        if (file.bytes.empty())
+            file.bytes = same_file((std::filesystem::path(source).parent_path() / file.path).string(), file,
+                                   "the materials that were read");
+    return materials;
+}
+
 std::string model_bytes(RunFile& model, const std::string& package, const std::string& source) {
     if (source.empty() && !model.bytes.empty()) return std::move(model.bytes);
     if (source.empty())
         throw InvalidSetting(fmt::format("{}: the model is not in it: name it with --source (it was {}, SHA-256 {})",
                                          package, model.path, model.sha256));
-    std::string bytes = read_file(std::filesystem::path(source));
-    if (const std::string found = run_file(source, bytes, false).sha256; found != model.sha256)
-        throw InvalidInput(
-            fmt::format("{}: found SHA-256 {}, expected the model that was carved, {}", source, found, model.sha256));
-    return bytes;
+    return same_file(source, model, "the model that was carved");
 }
 
 }  // namespace
@@ -36,6 +49,7 @@ CarveRequest request_of_package(const ModelBytes& package, const std::string& so
     request.model.unit = unit_named(run.model_unit);
     request.model.name = run.model.path;
     request.model.bytes = model_bytes(run.model, package.name, source);
+    request.model.materials = with_bytes(std::move(run.materials), source);
     request.pictures = PictureFiles(std::move(run.pictures));
     request.settings = settings_of(pattern, read_spec_toml(run.request_toml, package.name + ": request.toml"));
     if (run.version != version())

@@ -104,7 +104,12 @@ void open_mesh(const Settings& settings, CarveModel& model, const RunControl& ru
     target.mesh = std::move(read.mesh);
     target.named_triangles = named_triangles_of(read);
     target.triangle_colors = std::move(read.triangle_colors);
-    for (const std::filesystem::path& beside : read.read_beside) model.read_beside.push_back(beside.string());
+    model.materials = file.materials;
+    for (FileBeside& beside : read.read_beside) {
+        model.read_beside.push_back(beside.path.string());
+        if (file.format == MeshFormat::kObj)
+            model.materials.push_back(run_file(beside.path.filename().string(), beside.bytes, true));
+    }
     model.warnings = std::move(read.warnings);
 }
 

@@ -31,6 +31,7 @@ struct CarveModel {
     ModelBytes file;
     std::vector<CarveTarget> targets;      ///< at least one
     std::vector<std::string> read_beside;  ///< other files that were read: materials of an OBJ
+    std::vector<RunFile> materials;        ///< of an OBJ, by the name of their file, with their bytes
     std::vector<std::string> warnings;
 };
 

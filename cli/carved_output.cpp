@@ -62,6 +62,8 @@ RunSource source_of(const CarvedModel& result) {
     source.model = run_file(file.name, file.bytes, result.settings.output.source);
     source.model_format = mesh_format_name(file.format);
     source.model_unit = length_unit_name(file.unit);
+    for (const RunFile& materials : result.model.materials)
+        source.materials.push_back(run_file(materials.path, materials.bytes, result.settings.output.source));
     source.pictures = result.pictures;
     source.request_toml = write_spec_toml(document_from(result.settings));
     return source;

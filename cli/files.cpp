@@ -104,9 +104,10 @@ MeshFile read_model(const ModelBytes& model, const CadMeshing& cad, const RunCon
     options.unit = model.unit;
     options.cad = cad;
     options.folder = model.folder;
+    for (const RunFile& file : model.materials) options.materials.emplace(file.path, file.bytes);
     MeshFile file = read_mesh(model.bytes, model.format, model.name, options, run);
     file.warnings.insert(file.warnings.begin(), model.warnings.begin(), model.warnings.end());
-    file.read_beside.insert(file.read_beside.end(), model.read_beside.begin(), model.read_beside.end());
+    for (const std::string& beside : model.read_beside) file.read_beside.push_back({beside, {}});
     return file;
 }
 

@@ -9,6 +9,7 @@
 #include "cli/interrupt.h"
 #include "core/base/run_control.h"
 #include "formats/mesh_file.h"
+#include "formats/run_source.h"
 
 namespace fretwork::cli {
 
@@ -31,6 +32,7 @@ struct ModelBytes {
     LengthUnit unit = LengthUnit::kMillimeter;
     std::optional<std::filesystem::path> folder = {};  ///< that the file lies in; none for a stream
     std::vector<std::string> read_beside = {};         ///< other files that the bytes were made from
+    std::vector<RunFile> materials = {};               ///< of an OBJ, where they come from elsewhere than its folder
     std::vector<std::string> warnings = {};
 };
 

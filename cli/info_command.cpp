@@ -53,8 +53,10 @@ void add_objects(const ModelBytes& model, Facts& facts, const RunControl& run) {
     facts.add("objects", objects);
 }
 
-std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files) {
-    return {files.begin(), files.end()};
+std::vector<std::string> names_of(const std::vector<FileBeside>& files) {
+    std::vector<std::string> names;
+    for (const FileBeside& file : files) names.push_back(file.path.string());
+    return names;
 }
 
 /// The mesh of a 3MF; what else is in it goes to `facts`.

@@ -20,6 +20,12 @@ struct MeshPart {
     std::uint32_t triangle_count = 0;
 };
 
+/// Another file that a mesh was read from.
+struct FileBeside {
+    std::filesystem::path path;
+    std::string bytes;
+};
+
 /// A mesh as it was read. Positions are in millimetres whatever the unit of the file.
 struct MeshFile {
     TriangleMesh mesh;
@@ -27,7 +33,7 @@ struct MeshFile {
     std::vector<MeshPart> parts;        ///< cover all triangles in order; empty when the file names none
     /// Faces of a CAD model, named as FreeCAD does: "Face1" is the first. They cover all triangles in order.
     std::vector<MeshPart> faces;
-    std::vector<std::filesystem::path> read_beside;  ///< other files that were read: materials of an OBJ
+    std::vector<FileBeside> read_beside;  ///< other files that were read: materials of an OBJ
     LengthUnit unit = LengthUnit::kMillimeter;
     std::vector<std::string> warnings;  ///< what was skipped or had to be guessed
 };

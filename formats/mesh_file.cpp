@@ -123,14 +123,17 @@ MeshFile read_format(std::string_view bytes, MeshFormat format, std::string_view
 
 MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view source, const MeshReadOptions& options,
                    const RunControl& run) {
-    std::vector<std::filesystem::path> beside;
+    std::vector<FileBeside> beside;
     const ObjMaterialFiles materials = [&](std::string_view name) -> std::optional<std::string> {
+        const std::filesystem::path own_name = std::filesystem::path(name).filename();
+        if (const auto here = options.materials.find(own_name.string()); here != options.materials.end())
+            return here->second;
         if (!options.folder) return std::nullopt;
-        const std::filesystem::path file = *options.folder / std::filesystem::path(name).filename();
+        const std::filesystem::path file = *options.folder / own_name;
         std::error_code none;
         if (!std::filesystem::is_regular_file(file, none)) return std::nullopt;
-        beside.push_back(file);
-        return read_file(file);
+        beside.push_back({file, read_file(file)});
+        return beside.back().bytes;
     };
     MeshFile file = read_format(bytes, format, source, options.cad, materials, run);
     file.read_beside = std::move(beside);

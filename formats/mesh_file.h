@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,6 +36,8 @@ struct MeshReadOptions {
     CadMeshing cad = {};                        ///< how finely STEP, IGES and BREP are broken into triangles
     /// Where the materials of an OBJ lie; empty: they are not read. Reading by path sets it.
     std::optional<std::filesystem::path> folder = {};
+    /// Those that are at hand already, by the name of their file; they win over the folder.
+    std::map<std::string, std::string, std::less<>> materials = {};
 };
 
 /// Limits: files up to 4 GiB, coordinates up to 1e9 in size.

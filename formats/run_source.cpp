@@ -52,6 +52,8 @@ class SourceReader {
             source.model_format = json.at("model").at("format");
             source.model_unit = json.at("model").at("unit");
             source.model = file_of(json.at("model"));
+            if (json.contains("materials"))
+                for (const Json& file : json.at("materials")) source.materials.push_back(file_of(file));
             for (const Json& picture : json.at("pictures")) source.pictures.push_back(file_of(picture));
         } catch (const Json::exception& error) {
             fail_parse(name_, "run.json", in_quotes(error.what()), "the record of a run");
@@ -93,6 +95,9 @@ std::vector<RecordPart> parts_of(const RunSource& source) {
     json["model"] = add_file(source.model, kFolder + "source." + source.model_format, threemf::kSourceRelation);
     json["model"]["format"] = source.model_format;
     json["model"]["unit"] = source.model_unit;
+    for (std::size_t i = 0; i < source.materials.size(); ++i)
+        json["materials"].push_back(add_file(
+            source.materials[i], kFolder + "materials" + std::to_string(i + 1) + ".mtl", threemf::kMaterialsRelation));
     json["pictures"] = Json::array();
     for (std::size_t i = 0; i < source.pictures.size(); ++i) {
         const RunFile& picture = source.pictures[i];

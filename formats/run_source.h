@@ -19,8 +19,9 @@ struct RunFile {
 struct RunSource {
     std::string version;  ///< of the program
     RunFile model;
-    std::string model_format;  ///< "stl"
-    std::string model_unit;    ///< of formats that name none: "millimeter"
+    std::string model_format;        ///< "stl"
+    std::string model_unit;          ///< of formats that name none: "millimeter"
+    std::vector<RunFile> materials;  ///< of an OBJ, by the name of their file
     std::vector<RunFile> pictures;
     std::string request_toml;  ///< the settings as they were asked for, with every key
 };
@@ -28,8 +29,8 @@ struct RunSource {
 /// Fills in the hash of a file. \param keep  whether its bytes go into the package as well
 RunFile run_file(std::string path, std::string_view bytes, bool keep);
 
-/// `/Metadata/fretwork/run.json`, `request.toml` and, where kept, `source.EXT` and `picture1.EXT` ..., as parts of a
-/// record (`package_record.h`).
+/// `/Metadata/fretwork/run.json`, `request.toml` and, where kept, `source.EXT`, `materials1.mtl` ... and `picture1.EXT`
+/// ..., as parts of a record (`package_record.h`).
 std::vector<RecordPart> parts_of(const RunSource& source);
 
 /// Whether the relationships of the package name the record of a run. \throws InvalidInput  no ZIP

@@ -33,6 +33,7 @@ inline constexpr std::string_view kReportRelation = "http://fretwork.dev/3mf/202
 inline constexpr std::string_view kRunRelation = "http://fretwork.dev/3mf/2026/11/run";
 inline constexpr std::string_view kRequestRelation = "http://fretwork.dev/3mf/2026/11/request";
 inline constexpr std::string_view kSourceRelation = "http://fretwork.dev/3mf/2026/11/source";
+inline constexpr std::string_view kMaterialsRelation = "http://fretwork.dev/3mf/2026/11/materials";
 inline constexpr std::string_view kPictureRelation = "http://fretwork.dev/3mf/2026/11/picture";
 
 inline constexpr std::string_view kContentTypesPart = "[Content_Types].xml";

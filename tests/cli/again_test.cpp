@@ -1,4 +1,5 @@
 // A carved 3MF holds what it takes to carve it again, byte for byte.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -59,6 +60,34 @@ TEST_CASE("cli: --again makes the same bytes from the package alone", "[cli][aga
         for (const char* name : {"vase.off", "w.png", "m.png"}) std::filesystem::remove(folder / name);
         REQUIRE(run_program({"carve", out, "--again", "-o", folder / "again.3mf"}).exit_code == 0);
         CHECK((slurp(out) == slurp(folder / "again.3mf")));
+    }
+    SECTION("an OBJ with materials, which show where it is kept") {
+        spit(folder / "vase.mtl", "newmtl clay\nKd 0.8 0.4 0.2\n");
+        spit(folder / "vase.obj",
+             "mtllib vase.mtl\nusemtl clay\n" + write_mesh({make_vase(50.0, 32, 16)}, MeshFormat::kObj));
+        spit(folder / "s.toml", "[exemplar]\npattern = \"cells\"\n[[keep]]\nshape = \"lowest\"\nshare = 0.2\n");
+        const bool kept = GENERATE(true, false);
+        const ProgramResult first =
+            run_program(carve_line({folder / "vase.obj", "--pattern", folder / "s.toml", "-o", out, "-D",
+                                    kept ? "output.source=true" : "output.source=false"}));
+        CAPTURE(kept, first.err);
+        REQUIRE(first.exit_code == 0);
+        const std::vector<Rgb8> colors = read_mesh(std::filesystem::path(out)).triangle_colors;
+        CHECK(std::ranges::count(colors, Rgb8{204, 102, 51}) > 0);
+        std::vector<std::string> line = {"carve", out, "--again", "-o", folder / "again.3mf"};
+        if (kept)
+            for (const char* name : {"vase.obj", "vase.mtl"}) std::filesystem::remove(folder / name);
+        else
+            line.insert(line.end(), {"--source", folder / "vase.obj"});
+        const ProgramResult again = run_program(line);
+        CAPTURE(again.err);
+        REQUIRE(again.exit_code == 0);
+        CHECK((slurp(out) == slurp(folder / "again.3mf")));
+        if (kept) return;
+        spit(folder / "vase.mtl", "newmtl clay\nKd 0.8 0.4 0.3\n");
+        const ProgramResult other = run_program(line);
+        CHECK(other.exit_code == 2);
+        CHECK(other.err.find("vase.mtl: found SHA-256") != std::string::npos);
     }
     SECTION("a project with a spec for one object") {
         const std::string box = make_mesh_object(1, make_box(Vec3(0, 0, 0), Vec3(20, 20, 20)), "name=\"lid\"");

@@ -42,7 +42,8 @@ TEST_CASE("obj: colours survive in a file of materials beside it", "[formats]") 
     CHECK(file.triangle_colors == colors);
     CHECK(file.warnings.empty());
     REQUIRE(file.read_beside.size() == 1);
-    CHECK(file.read_beside[0] == obj_materials_path(path));
+    CHECK(file.read_beside[0].path == obj_materials_path(path));
+    CHECK(file.read_beside[0].bytes == read_file(obj_materials_path(path)));
 
     fs::remove(obj_materials_path(path));
     const MeshFile bare = read_mesh(path);
