@@ -8,6 +8,7 @@
 #include "formats/color_channel.h"
 #include "formats/mesh_writer_input.h"
 #include "formats/number_text.h"
+#include "formats/sheet_names.h"
 #include "formats/slicer_paint.h"
 #include "formats/xml_text.h"
 
@@ -41,12 +42,6 @@ std::vector<Rgb8> palette_of(std::span<const Rgb8> colors) {
     return palette;
 }
 
-std::string sheet_path(std::string_view stack, std::size_t sheet) {
-    std::string number = std::to_string(sheet);
-    number.insert(0, 4 - std::min<std::size_t>(4, number.size()), '0');
-    return "/3D/volumetric/" + std::string(stack) + "/sheet" + number + ".png";
-}
-
 /// From model coordinates to the unit cube over the grid; rows of a 4 x 3 matrix.
 std::string grid_transform(const VoxelGrid& grid, double units_per_mm) {
     std::array<double, 12> t{};
@@ -75,9 +70,9 @@ CarvedObjectText::CarvedObjectText(const CarvedObject& object, const std::string
                            std::to_string(object.paint.extruders.size()) + " extruders, expected one per triangle");
     if (object.voxels != nullptr) own_sheets_ = make_voxel_sheets(*object.voxels, run);
     sheets_ = object.voxels != nullptr ? &own_sheets_ : object.sheets;
-    field_stack_ = "voxels" + stack_suffix;
-    reinforced_stack_ = "reinforced" + stack_suffix;
-    facts_stack_ = "facts" + stack_suffix;
+    field_stack_ = std::string(kFieldStack) + stack_suffix;
+    reinforced_stack_ = std::string(kReinforcedStack) + stack_suffix;
+    facts_stack_ = std::string(kFactsStack) + stack_suffix;
 }
 
 std::string CarvedObjectText::resources(const ModelDialect& dialect, const std::function<std::uint32_t()>& next_id) {

@@ -13,6 +13,7 @@
 #include "formats/opc_parts.h"
 #include "formats/parse_error.h"
 #include "formats/prusa_config_edit.h"
+#include "formats/sheet_names.h"
 #include "formats/threemf_model_edit.h"
 #include "formats/threemf_model_reader.h"
 #include "formats/threemf_names.h"
@@ -172,9 +173,7 @@ struct ThreemfEditor::Impl {
             if (number > 0 || !may_be_empty) suffix = std::to_string(std::max<std::size_t>(number, 1));
             ++number;
             const bool taken = std::ranges::any_of(zip.entries(), [&](const ZipReader::Entry& entry) {
-                const std::string name = lower_case(entry.name);
-                return !old_sheets.contains(name) && (name.starts_with("3d/volumetric/voxels" + suffix + "/") ||
-                                                      name.starts_with("3d/volumetric/reinforced" + suffix + "/"));
+                return !old_sheets.contains(lower_case(entry.name)) && stack_suffix_of("/" + entry.name) == suffix;
             });
             if (!taken) return suffix;
         }

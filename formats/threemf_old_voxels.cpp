@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <map>
-#include <regex>
 #include <utility>
 
+#include "formats/sheet_names.h"
 #include "formats/text_scanner.h"
 #include "formats/threemf_names.h"
 
@@ -94,8 +94,7 @@ class ReferenceScanner {
 };
 
 bool lies_where_ours_do(const Resource& stack) {
-    const std::regex ours("/3D/volumetric/(voxels|reinforced)[0-9]*/[^/]*", std::regex::icase);
-    return std::ranges::all_of(stack.sheets, [&](const std::string& path) { return std::regex_match(path, ours); });
+    return std::ranges::all_of(stack.sheets, [](const std::string& path) { return stack_suffix_of(path).has_value(); });
 }
 
 /// Volume data of the carved objects and what they refer to, as far as it is ours.

@@ -200,6 +200,44 @@ TEST_CASE("3mf editor: an object carved before is carved again without a clash",
     CHECK(volume_mm3(read_threemf(twice, "p").mesh) == Approx(volume_mm3(read_threemf(once, "p").mesh)));
 }
 
+TEST_CASE("3mf editor: every image stack of an earlier carve goes, and names that are taken are not used again",
+          "[formats][threemf]") {
+    Carving carving;
+    const std::vector<std::uint8_t> reinforced = {1};
+    const std::vector<float> stress_mpa = {2.5F};
+    const std::vector<std::uint16_t> labels = {7};
+    carving.sheets = make_voxel_sheets({carving.shell, carving.solid, reinforced, {}, stress_mpa, labels});
+    const auto sheet_names = [](const std::string& package) {
+        std::vector<std::string> names;
+        const ZipReader zip(package, "p");
+        for (const auto& entry : zip.entries())
+            if (entry.name.starts_with("3D/volumetric/")) names.push_back(before(entry.name, "/sheet"));
+        std::ranges::sort(names);
+        names.erase(std::unique(names.begin(), names.end()), names.end());
+        return names;
+    };
+    const std::string once = carving.of(make_project(), {{kRoot, 5}});
+    REQUIRE(sheet_names(once) ==
+            std::vector<std::string>{"3D/volumetric/facts", "3D/volumetric/reinforced", "3D/volumetric/voxels"});
+    // The second carve knows less: nothing of what only the first knew stays.
+    const std::string twice = Carving().of(once, {{kRoot, 5}});
+    CHECK(sheet_names(twice) == std::vector<std::string>{"3D/volumetric/voxels"});
+    CHECK(part_of(twice, kRoot).find("fw:stress") == std::string::npos);
+    CHECK(sheet_names(carving.of(twice, {{kRoot, 5}})) == sheet_names(once));
+
+    const char* stack = GENERATE("facts", "reinforced", "VOXELS");
+    CAPTURE(stack);
+    Parts parts;
+    const std::string project = make_project();
+    const ZipReader zip(project, "p");
+    for (const auto& entry : zip.entries()) parts.emplace_back(entry.name, part_of(project, entry.name));
+    const std::string taken = std::string("3D/volumetric/") + stack + "/sheet0000.png";
+    parts.emplace_back(taken, "not ours");
+    const std::string beside = carving.of(testing::make_zip(parts), {{kRoot, 5}});
+    CHECK(part_of(beside, taken) == "not ours");
+    CHECK_THAT(part_of(beside, kRoot), Catch::Contains("/3D/volumetric/facts1/"));
+}
+
 TEST_CASE("3mf editor: voxel data that others use, or that are not ours, stay in an object carved again",
           "[formats][threemf][lossless]") {
     const Carving carving;
