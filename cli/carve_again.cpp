@@ -24,7 +24,7 @@ std::string same_file(const std::string& path, const RunFile& then, std::string_
 /// Materials of an OBJ that the package only names lie beside the model that `source` names.
 std::vector<RunFile> with_bytes(std::vector<RunFile> materials, const std::string& source) {
     for (RunFile& file : materials)
-        if (file.bytes.empty())
+        if (file.bytes.empty() && !source.empty())
             file.bytes = same_file((std::filesystem::path(source).parent_path() / file.path).string(), file,
                                    "the materials that were read");
     return materials;
@@ -43,18 +43,22 @@ std::string model_bytes(RunFile& model, const std::string& package, const std::s
 CarveRequest request_of_package(const ModelBytes& package, const std::string& source, const PatternOptions& pattern) {
     if (names_spec(pattern.pattern))
         throw InvalidSetting(fmt::format("--again and --pattern {} both bring a spec; leave one out", pattern.pattern));
-    RunSource run = read_run_source(package.bytes, package.name);
+    return request_of_run(read_run_source(package.bytes, package.name), package.name, source, pattern);
+}
+
+CarveRequest request_of_run(RunSource run, const std::string& package, const std::string& source,
+                            const PatternOptions& pattern) {
     CarveRequest request;
     request.model.format = mesh_format_from_name(run.model_format);
     request.model.unit = unit_named(run.model_unit);
     request.model.name = run.model.path;
-    request.model.bytes = model_bytes(run.model, package.name, source);
+    request.model.bytes = model_bytes(run.model, package, source);
     request.model.materials = with_bytes(std::move(run.materials), source);
     request.pictures = PictureFiles(std::move(run.pictures));
-    request.settings = settings_of(pattern, read_spec_toml(run.request_toml, package.name + ": request.toml"));
+    request.settings = settings_of(pattern, read_spec_toml(run.request_toml, package + ": request.toml"));
     if (run.version != version())
         request.warnings.push_back(fmt::format("{} was carved by version {}, this is {}: the result may differ",
-                                               package.name, run.version, version()));
+                                               package, run.version, version()));
     return request;
 }
 

@@ -16,6 +16,10 @@ struct CarveRequest {
     std::vector<std::string> warnings;
 };
 
+/// The model, pictures and settings of a record. \see request_of_package
+CarveRequest request_of_run(RunSource run, const std::string& package, const std::string& source,
+                            const PatternOptions& pattern);
+
 /// The model, pictures and settings that the package keeps. Flags of `pattern` come on top.
 /// \param source  path of the model, needed where the package only names it; empty: none
 /// \throws InvalidInput    see read_run_source; a model or picture other than the one that was carved.

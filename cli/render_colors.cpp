@@ -6,18 +6,16 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <utility>
+#include <span>
 
+#include "cli/view_colors.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/mesh/edge_table.h"
 #include "core/pipeline/stress_scale.h"
 
 namespace fretwork::cli {
 namespace {
-
-constexpr Rgb8 kBridge = {214, 84, 32};
-constexpr Rgb8 kPlain = {196, 199, 204};
-constexpr Rgb8 kNotKnown = {150, 150, 150};
 
 const char* property_of(RenderColor color) {
     switch (color) {
@@ -39,23 +37,15 @@ const VolumetricObject& only_object(const VolumetricFile& file, const std::strin
 
 /// Triangles that share an edge, three each; a triangle stands for none at a border.
 std::vector<std::array<std::uint32_t, 3>> neighbors(const TriangleMesh& mesh) {
-    struct Side {
-        std::uint64_t edge;
-        std::uint32_t triangle, side;
-    };
-    std::vector<Side> sides;
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-        for (std::uint32_t k = 0; k < 3; ++k) {
-            const auto [low, high] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-            sides.push_back({std::uint64_t{low} << 32 | high, t, k});
-        }
-    std::ranges::sort(sides, {}, [](const Side& s) { return std::pair(s.edge, s.triangle); });
     std::vector<std::array<std::uint32_t, 3>> next(mesh.triangles.size());
     for (std::uint32_t t = 0; t < next.size(); ++t) next[t] = {t, t, t};
-    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-        if (sides[i].edge != sides[i + 1].edge) continue;
-        next[sides[i].triangle][sides[i].side] = sides[i + 1].triangle;
-        next[sides[i + 1].triangle][sides[i + 1].side] = sides[i].triangle;
+    const EdgeTable edges(mesh);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const std::span<const HalfEdge> there = edges.half_edges(e);
+        for (std::size_t i = 0; i + 1 < there.size(); ++i) {
+            next[there[i] / 3][there[i] % 3] = there[i + 1] / 3;
+            next[there[i + 1] / 3][there[i + 1] % 3] = there[i] / 3;
+        }
     }
     return next;
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cli/view_colors.h"
 #include "core/pipeline/report_view.h"
 #include "core/pipeline/stress_scale.h"
 #include "core/render/render.h"
@@ -12,9 +13,6 @@ namespace fretwork::cli {
 namespace {
 
 constexpr int kPictureSide = 560;
-constexpr Rgb8 kBridge = {214, 84, 32};
-constexpr Rgb8 kPlain = {196, 199, 204};
-constexpr Rgb8 kNotKnown = {150, 150, 150};
 
 RenderSettings picture_settings() {
     RenderSettings settings;

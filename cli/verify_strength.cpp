@@ -26,26 +26,25 @@ struct Known {
     std::vector<std::string> cautions;
 };
 
-/// The object that was carved, where the package keeps it and it is the only one.
-void find_source(const ModelBytes& package, Known& known, const RunControl& run) {
-    const RunSource made = read_run_source(package.bytes, package.name);
+/// The settings of a carve, and the object where the package keeps it and it is the only one.
+Known what_package_knows(const ModelBytes& package, const RunControl& run) {
+    Known known;
+    RunSource made = read_run_source(package.bytes, package.name);
     if (made.model.bytes.empty()) {
+        known.settings = settings_of({}, read_spec_toml(made.request_toml, package.name + ": request.toml"));
         known.cautions.push_back("the package does not keep the model: regions are looked for on the carved surface");
-        return;
+        return known;
     }
-    CarveRequest request = request_of_package(package, "", {});
+    CarveRequest request = request_of_run(std::move(made), package.name, "", {});
+    known.settings = request.settings;
     CarveModel source = open_model(std::move(request.model), request.settings, run);
     if (source.targets.size() == 1) known.source = std::move(source.targets.front());
+    return known;
 }
 
 Known what_is_known(const ModelBytes& model, const StrengthOptions& options, const RunControl& run) {
-    Known known;
     const bool carved = model.format == MeshFormat::kThreemf && has_run_source(model.bytes, model.name);
-    if (carved) {
-        const RunSource made = read_run_source(model.bytes, model.name);
-        known.settings = settings_of({}, read_spec_toml(made.request_toml, model.name + ": request.toml"));
-        find_source(model, known, run);
-    }
+    Known known = carved ? what_package_knows(model, run) : Known{};
     if (options.spec.empty()) return known;
     PatternOptions named;
     named.pattern = options.spec;

@@ -23,6 +23,14 @@ struct Facts {
     void add(std::string name, FactValue value) { entries.emplace_back(std::move(name), std::move(value)); }
 };
 
+/// As facts hold them.
+[[nodiscard]] inline std::int64_t fact_count(std::size_t n) {
+    return static_cast<std::int64_t>(n);
+}
+[[nodiscard]] inline std::vector<double> fact_point(const Vec3& p) {
+    return {p[0], p[1], p[2]};
+}
+
 /// One line per fact; lists of facts are numbered: "parts.0.name = lid".
 std::string facts_lines(const Facts& facts);
 

@@ -6,8 +6,8 @@
 
 namespace fretwork {
 
-/// Safe between tags and within quoted attributes: & < > " ' are named; control characters and bytes that are no
-/// UTF-8 become U+FFFD.
+/// Safe between tags and within quoted attributes, single quotes too: otherwise as xml_escaped, and DEL becomes U+FFFD
+/// as well.
 std::string html_escaped(std::string_view text);
 
 /// RFC 4648, with padding.

@@ -3,32 +3,24 @@
 namespace fretwork {
 namespace {
 
-std::int64_t count(std::size_t n) {
-    return static_cast<std::int64_t>(n);
-}
-
-std::vector<double> coordinates(const Vec3& p) {
-    return {p[0], p[1], p[2]};
-}
-
 /// Only what was found has a place.
 void add_place(const std::string& name, const PrintPlace& place, Facts& facts) {
     facts.add(name + "_mm", place.size_mm);
-    if (place.size_mm > 0.0) facts.add(name + "_at_mm", coordinates(place.at_mm));
+    if (place.size_mm > 0.0) facts.add(name + "_at_mm", fact_point(place.at_mm));
 }
 
 std::vector<Facts> layers_with_islands(const PrintabilityReport& report) {
     std::vector<Facts> layers;
     for (std::size_t i = 0; i < report.islands_per_layer.size(); ++i)
         if (report.islands_per_layer[i] > 0)
-            layers.push_back({{{"layer", count(i)}, {"islands", count(report.islands_per_layer[i])}}});
+            layers.push_back({{{"layer", fact_count(i)}, {"islands", fact_count(report.islands_per_layer[i])}}});
     return layers;
 }
 
 std::vector<Facts> island_places(const PrintabilityReport& report) {
     std::vector<Facts> places;
     for (const PrintPlace& place : report.island_places)
-        places.push_back({{{"at_mm", coordinates(place.at_mm)}, {"size_mm", place.size_mm}}});
+        places.push_back({{{"at_mm", fact_point(place.at_mm)}, {"size_mm", place.size_mm}}});
     return places;
 }
 
@@ -37,13 +29,13 @@ std::vector<Facts> island_places(const PrintabilityReport& report) {
 void add_printability_facts(const PrintabilityReport& report, const std::vector<std::string>& faults,
                             const std::string& group, Facts& facts) {
     facts.add(group + "layer_height_mm", report.layer_height_mm);
-    facts.add(group + "layers", count(report.layers));
-    facts.add(group + "empty_layers", count(report.empty_layers));
+    facts.add(group + "layers", fact_count(report.layers));
+    facts.add(group + "empty_layers", fact_count(report.empty_layers));
     facts.add(group + "first_layer_contact_mm2", report.first_layer_contact_mm2);
     facts.add(group + "material_mm3", report.material_mm3);
-    facts.add(group + "loose_parts", count(report.loose_parts));
-    facts.add(group + "closed_cavities", count(report.closed_cavities));
-    facts.add(group + "islands", count(report.islands));
+    facts.add(group + "loose_parts", fact_count(report.loose_parts));
+    facts.add(group + "closed_cavities", fact_count(report.closed_cavities));
+    facts.add(group + "islands", fact_count(report.islands));
     facts.add(group + "overhang_area_mm2", report.overhang_area_mm2);
     add_place(group + "longest_bridge", report.longest_bridge, facts);
     add_place(group + "longest_cantilever", report.longest_cantilever, facts);

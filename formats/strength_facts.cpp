@@ -3,14 +3,6 @@
 namespace fretwork {
 namespace {
 
-std::int64_t count(std::size_t n) {
-    return static_cast<std::int64_t>(n);
-}
-
-std::vector<double> coordinates(const Vec3& p) {
-    return {p[0], p[1], p[2]};
-}
-
 void add_stress(const std::string& group, const StressStatistics& stress, Facts& facts) {
     facts.add(group + "average_pa", stress.average_pa);
     facts.add(group + "median_pa", stress.median_pa);
@@ -27,8 +19,8 @@ std::vector<Facts> case_facts(const StrengthReport& report) {
         add_stress("stress_sum.", load_case.stress_sum, facts);
         facts.add("max_von_mises_pa", load_case.max_von_mises_pa);
         facts.add("max_displacement_mm", load_case.max_displacement_mm);
-        facts.add("applied_n", coordinates(load_case.applied_n));
-        facts.add("reaction_n", coordinates(load_case.reaction_n));
+        facts.add("applied_n", fact_point(load_case.applied_n));
+        facts.add("reaction_n", fact_point(load_case.reaction_n));
         facts.add("iterations", std::int64_t{load_case.iterations});
     }
     return cases;
@@ -37,7 +29,7 @@ std::vector<Facts> case_facts(const StrengthReport& report) {
 std::vector<Facts> weak_places(const StrengthReport& report) {
     std::vector<Facts> places;
     for (const WeakPlace& place : report.weakest)
-        places.push_back({{{"at_mm", coordinates(place.at_mm)},
+        places.push_back({{{"at_mm", fact_point(place.at_mm)},
                            {"factor_of_safety", place.factor},
                            {"stress_sum_pa", place.stress_sum_pa},
                            {"von_mises_pa", place.von_mises_pa},
@@ -56,10 +48,10 @@ void add_strength_facts(const StrengthCheck& check, const std::vector<std::strin
     add_stress(group + "stress_sum.", report.stress_sum, facts);
     facts.add(group + "voxel_mm", report.voxel_mm);
     facts.add(group + "coarser_than_asked", check.coarser);
-    facts.add(group + "voxels", count(report.voxels));
-    facts.add(group + "nodes", count(report.nodes));
-    facts.add(group + "pieces", count(report.pieces));
-    facts.add(group + "joining_voxels", count(report.joining_voxels));
+    facts.add(group + "voxels", fact_count(report.voxels));
+    facts.add(group + "nodes", fact_count(report.nodes));
+    facts.add(group + "pieces", fact_count(report.pieces));
+    facts.add(group + "joining_voxels", fact_count(report.joining_voxels));
     facts.add(group + "volume_mm3", report.volume_mm3);
     facts.add(group + "weight_n", report.weight_n);
     facts.add(group + "solver", std::string(report.by_factor ? "factor" : "multigrid"));

@@ -1,26 +1,23 @@
 #include "core/pipeline/shell_stress.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+
+#include "core/base/nearest_rank.h"
 
 namespace fretwork {
 namespace {
 
 constexpr double kMegapascal = 1e6;
 
-double percentile(const std::vector<double>& ascending, double share) {
-    const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(ascending.size())));
-    return ascending[std::max<std::size_t>(rank, 1) - 1];
-}
-
 }  // namespace
 
 StressFigures stress_figures(const std::vector<double>& samples_mpa) {
     if (samples_mpa.empty()) return {};
     const double sum = std::accumulate(samples_mpa.begin(), samples_mpa.end(), 0.0);
-    return {sum / static_cast<double>(samples_mpa.size()), percentile(samples_mpa, 0.5), percentile(samples_mpa, 0.99),
-            samples_mpa.back()};
+    const std::size_t count = samples_mpa.size();
+    return {sum / static_cast<double>(count), samples_mpa[nearest_rank(count, 0.5)],
+            samples_mpa[nearest_rank(count, 0.99)], samples_mpa.back()};
 }
 
 StressField stress_on_voxels(const SurfaceVoxels& shell, const SolidStates& solid, const ScoredPaths& scored) {

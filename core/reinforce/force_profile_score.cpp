@@ -1,21 +1,12 @@
 #include "core/reinforce/force_profile_score.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
+#include "core/base/nearest_rank.h"
+
 namespace fretwork {
-namespace {
-
-/// Nearest-rank percentile of sorted values.
-double percentile(const std::vector<double>& sorted, double share) {
-    const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
-    return sorted[std::max<std::size_t>(rank, 1) - 1];
-}
-
-}  // namespace
-
 ScoreSummary summarize_solid_scores(std::span<const double> scores_pa, std::span<const EdgeState> states) {
     std::vector<double> solid;
     for (std::size_t e = 0; e < scores_pa.size(); ++e)
@@ -26,8 +17,8 @@ ScoreSummary summarize_solid_scores(std::span<const double> scores_pa, std::span
     double sum = 0.0;
     for (const double score : solid) sum += score;
     summary.max_pa = solid.back();
-    summary.p99_pa = percentile(solid, 0.99);
-    summary.median_pa = percentile(solid, 0.5);
+    summary.p99_pa = solid[nearest_rank(solid.size(), 0.99)];
+    summary.median_pa = solid[nearest_rank(solid.size(), 0.5)];
     summary.average_pa = sum / static_cast<double>(solid.size());
     return summary;
 }

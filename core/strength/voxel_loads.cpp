@@ -6,43 +6,11 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/mesh/box_tree.h"
+#include "core/mesh/nearest_point.h"
 #include "core/strength/cube_element.h"
 
 namespace fretwork {
 namespace {
-
-/// Nearest of many points; ties go to the lowest.
-class NearestPoint {
-  public:
-    explicit NearestPoint(std::vector<Vec3> points_mm, const RunControl& run)
-        : points_mm_(std::move(points_mm)), tree_(boxes_around(points_mm_), run) {}
-
-    [[nodiscard]] std::uint32_t to(const Vec3& at_mm) const {
-        double least = std::numeric_limits<double>::infinity();
-        std::uint32_t nearest = 0;
-        tree_.near(at_mm, least, [&](std::uint32_t i) {
-            const double distance = (points_mm_[i] - at_mm).norm();
-            if (distance < least || (distance == least && i < nearest)) {
-                least = distance;
-                nearest = i;
-            }
-            return least;
-        });
-        return nearest;
-    }
-
-  private:
-    static std::vector<Box> boxes_around(const std::vector<Vec3>& points_mm) {
-        std::vector<Box> boxes;
-        boxes.reserve(points_mm.size());
-        for (const Vec3& p : points_mm) boxes.push_back({p, p});
-        return boxes;
-    }
-
-    std::vector<Vec3> points_mm_;
-    BoxTree tree_;
-};
 
 std::vector<Vec3> centers_of(const VoxelModel& model) {
     std::vector<Vec3> centers;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/nearest_rank.h"
 #include "core/base/parallel.h"
 
 namespace fretwork {
@@ -39,8 +40,7 @@ StressStatistics statistics_of(std::vector<float> values) {
     result.average_pa =
         sum_in_fixed_order(n, kGrain, 0.0, [&](std::size_t i) { return double{values[i]}; }) / static_cast<double>(n);
     const auto at_rank = [&](double share) {
-        const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(n)));
-        const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+        const auto nth = values.begin() + static_cast<std::ptrdiff_t>(nearest_rank(n, share));
         std::nth_element(values.begin(), nth, values.end());
         return double{*nth};
     };

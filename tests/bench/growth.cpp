@@ -162,7 +162,7 @@ int main(int argc, char** argv) {
         ->check(CLI::ExistingDirectory);
     app.add_option("--write", options.document, "document whose section 'growth' is replaced");
     CLI11_PARSE(app, argc, argv);
-    try {
+    return publish("growth", options.document, "growth", [&] {
         std::vector<GrowthRow> rows;
         for (const int resolution : {64, 96, 128, 192, 256, 384, 512, 1024}) {
             if (resolution > options.largest) break;
@@ -191,13 +191,6 @@ int main(int argc, char** argv) {
         text += "Seconds of wall clock:\n\n" + table_of(rows, seconds, "{:.2f}", 1.0);
         text += "\nPeak memory during the stage, MB (all that is held, not only what the stage has added):\n\n" +
                 table_of(rows, bytes, "{:.0f}", 1e6);
-        if (options.document.empty())
-            fmt::print("{}", text);
-        else
-            write_section(options.document, "growth", text);
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "growth: {}\n", e.what());
-        return 1;
-    }
-    return 0;
+        return text;
+    });
 }

@@ -213,7 +213,7 @@ int main(int argc, char** argv) {
     app.add_option("--pictures", options.pictures, "folder for pictures of all plates")->check(CLI::ExistingDirectory);
     app.add_option("--write", options.document, "document whose section 'likeness' is replaced");
     CLI11_PARSE(app, argc, argv);
-    try {
+    return publish("likeness", options.document, "likeness", [&] {
         const BenchModel plate = make_plate(options.plate);
         const std::vector<BenchModel> curved = curved_models(options);
         std::vector<ExemplarResult> results;
@@ -227,14 +227,6 @@ int main(int argc, char** argv) {
             options.seeds, options.plate, options.curved, kCurvedWindows, options.structure, {}, {}};
         for (const Variant& v : variants(options)) report.variants.push_back(v.name);
         for (const BenchModel& m : curved) report.models.push_back(m.name);
-        const std::string text = likeness_report(report, results);
-        if (options.document.empty())
-            fmt::print("{}", text);
-        else
-            write_section(options.document, "likeness", text);
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "likeness: {}\n", e.what());
-        return 1;
-    }
-    return 0;
+        return likeness_report(report, results);
+    });
 }

@@ -1,5 +1,8 @@
 #include "markdown.h"
 
+#include <cstdio>
+#include <exception>
+
 #include "core/base/error.h"
 #include "formats/atomic_write.h"
 #include "formats/read_file.h"
@@ -31,6 +34,21 @@ std::string with_section(std::string_view document, std::string_view name, std::
 
 void write_section(const std::filesystem::path& document, std::string_view name, std::string_view text) {
     atomic_write(document, with_section(read_file(document), name, text));
+}
+
+int publish(const char* program, const std::string& document, std::string_view section,
+            const std::function<std::string()>& measure) {
+    try {
+        const std::string text = measure();
+        if (document.empty())
+            std::fwrite(text.data(), 1, text.size(), stdout);
+        else
+            write_section(document, section, text);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s: %s\n", program, error.what());
+        return 1;
+    }
+    return 0;
 }
 
 }  // namespace fretwork::bench

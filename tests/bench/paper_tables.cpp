@@ -189,23 +189,15 @@ int main(int argc, char** argv) {
     app.add_flag("!--no-large", options.large, "leave out runs above 256 voxels");
     app.add_option("--write", options.document, "document whose section 'paper' is replaced");
     CLI11_PARSE(app, argc, argv);
-    try {
+    return publish("paper_tables", options.document, "paper", [&] {
         const Runner runner(options);
         const std::vector<PaperRow> rows = paper_rows();
         std::vector<Outcome> outcomes;
         outcomes.reserve(rows.size());
         for (const PaperRow& row : rows) outcomes.push_back(runner.run(row.job));
-        const std::string text =
-            "Cells with a slash read paper / ours. Seconds of wall clock. Peak memory and *file to file* are those of "
-            "the program's own process, reading and writing included.\n\n" +
-            paper_table(rows, outcomes) + "\n" + target_table(runner, rows, outcomes);
-        if (options.document.empty())
-            fmt::print("{}", text);
-        else
-            write_section(options.document, "paper", text);
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "paper_tables: {}\n", e.what());
-        return 1;
-    }
-    return 0;
+        return "Cells with a slash read paper / ours. Seconds of wall clock. Peak memory and *file to file* are those "
+               "of "
+               "the program's own process, reading and writing included.\n\n" +
+               paper_table(rows, outcomes) + "\n" + target_table(runner, rows, outcomes);
+    });
 }

@@ -164,15 +164,5 @@ int main(int argc, char** argv) {
     app.add_option("--only", options.only, "rows whose name holds this");
     app.add_option("--write", options.document, "document whose section 'soundness' is replaced");
     CLI11_PARSE(app, argc, argv);
-    try {
-        const std::string text = measured(options);
-        if (options.document.empty())
-            fmt::print("{}", text);
-        else
-            write_section(options.document, "soundness", text);
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "soundness_bench: {}\n", e.what());
-        return 1;
-    }
-    return 0;
+    return publish("soundness_bench", options.document, "soundness", [&] { return measured(options); });
 }

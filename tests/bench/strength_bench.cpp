@@ -18,7 +18,7 @@
 #include "core/fem/beam_widths.h"
 #include "core/graph/connect_samples.h"
 #include "core/graph/poisson_disk.h"
-#include "core/mesh/box_tree.h"
+#include "core/mesh/nearest_point.h"
 #include "core/pipeline/carve.h"
 #include "core/pipeline/choose_exemplar.h"
 #include "core/pipeline/memory_use.h"
@@ -101,29 +101,6 @@ double rank_correlation(const std::vector<double>& a, const std::vector<double>&
     return xy / std::sqrt(xx * yy);
 }
 
-/// Nearest surface voxel of each voxel of the analysis.
-std::vector<VoxelIndex> nearest_entries(const SurfaceVoxels& shell, const VoxelModel& model) {
-    std::vector<Box> boxes;
-    for (const Vec3& p : shell.points_mm) boxes.push_back({p, p});
-    const BoxTree tree(boxes);
-    std::vector<VoxelIndex> nearest;
-    for (const VoxelCoord& v : model.voxels) {
-        const Vec3 at = model.grid.center_mm(v);
-        double least = std::numeric_limits<double>::infinity();
-        VoxelIndex best = 0;
-        tree.near(at, least, [&](std::uint32_t i) {
-            const double distance = (shell.points_mm[i] - at).norm();
-            if (distance < least) {
-                least = distance;
-                best = i;
-            }
-            return least;
-        });
-        nearest.push_back(best);
-    }
-    return nearest;
-}
-
 /// Over regions of the samples: the largest score of the edges at a sample against the 95th percentile of the voxels in
 /// its region, under one load.
 double foresight(const CarveResult& carve, const VoxelModel& model, const std::vector<float>& stress_pa,
@@ -148,9 +125,11 @@ double foresight(const CarveResult& carve, const VoxelModel& model, const std::v
             for (const SampleIndex s : {graph.edges[e].a, graph.edges[e].b})
                 foreseen[s] = std::max(foreseen[s], scores[e]);
     std::vector<std::vector<float>> region(graph.samples.size());
-    const std::vector<VoxelIndex> nearest = nearest_entries(shell, model);
-    for (std::size_t v = 0; v < nearest.size(); ++v)
-        if (graph.owner[nearest[v]] != kNoSample) region[graph.owner[nearest[v]]].push_back(stress_pa[v]);
+    const NearestPoint entries(shell.points_mm);
+    for (std::size_t v = 0; v < model.voxels.size(); ++v) {
+        const SampleIndex sample = graph.owner[entries.to(model.grid.center_mm(model.voxels[v]))];
+        if (sample != kNoSample) region[sample].push_back(stress_pa[v]);
+    }
     std::vector<double> found, matching;
     for (std::size_t s = 0; s < region.size(); ++s) {
         if (region[s].size() < 20 || foreseen[s] == 0.0) continue;
@@ -263,15 +242,5 @@ int main(int argc, char** argv) {
     app.add_option("--only", options.only, "rows whose name holds this");
     app.add_option("--write", options.document, "document whose section 'strength' is replaced");
     CLI11_PARSE(app, argc, argv);
-    try {
-        const std::string text = measured(options);
-        if (options.document.empty())
-            fmt::print("{}", text);
-        else
-            write_section(options.document, "strength", text);
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "strength_bench: {}\n", e.what());
-        return 1;
-    }
-    return 0;
+    return publish("strength_bench", options.document, "strength", [&] { return measured(options); });
 }

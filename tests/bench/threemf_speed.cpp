@@ -306,15 +306,5 @@ int main(int argc, char** argv) {
     app.add_option("--only", options.only, "of the other programs, those whose name holds this");
     app.add_option("--write", options.document, "document whose section 'threemf' is replaced");
     CLI11_PARSE(app, argc, argv);
-    try {
-        const std::string text = report(options);
-        if (options.document.empty())
-            fmt::print("{}", text);
-        else
-            write_section(options.document, "threemf", text);
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "threemf_speed: {}\n", e.what());
-        return 1;
-    }
-    return 0;
+    return publish("threemf_speed", options.document, "threemf", [&] { return report(options); });
 }
