@@ -1,5 +1,6 @@
 #include "core/strength/strength.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -227,6 +228,41 @@ TEST_CASE("strength: loads of the surface reach the voxels with all their force"
     for (std::size_t i = 0; i < under_pressure[0].push_n.size(); ++i)
         pressed[static_cast<int>(i % 3)] += under_pressure[0].push_n[i];
     CHECK(pressed[2] == Approx(-0.1 * 3.14159 * 75.0).epsilon(0.1));
+}
+
+TEST_CASE("strength: loads of the surface keep their lines of action", "[strength]") {
+    const SurfaceVoxels shell = voxelize(make_box(Vec3::Zero(), Vec3(10, 10, 10)), {.resolution = 7});
+    const VoxelModel model = full_block({10, 10, 10});
+    ForceProfile profile;
+    PatchLoad& patch = profile.cases.emplace_back().loads.emplace_back();
+    patch.force_n = Vec3(1, 2, -30);
+    Vec3 turning = Vec3::Zero();
+    for (VoxelIndex v = 0; v < shell.size(); ++v)
+        if (shell.points_mm[v][0] > 9.0) patch.voxels.push_back(v);
+    REQUIRE(patch.voxels.size() > 20);
+    for (const VoxelIndex v : patch.voxels)
+        turning += shell.points_mm[v].cross(patch.force_n) / static_cast<double>(patch.voxels.size());
+    const VoxelCase found = cases_of(profile, shell, model).front();
+    Vec3 turned = Vec3::Zero();
+    for (NodeIndex n = 0; n < model.nodes.size(); ++n)
+        turned += model.node_mm(n).cross(Vec3(found.push_n[3 * n], found.push_n[3 * n + 1], found.push_n[3 * n + 2]));
+    CHECK((turned - turning).norm() < 1e-6 * turning.norm());
+}
+
+TEST_CASE("strength: cases with supports of their own come out as if alone", "[strength]") {
+    const VoxelModel model = full_block({12, 6, 5});
+    std::vector<VoxelCase> cases = self_weight_cases(model);
+    cases[1].held = held_where(model, [](const VoxelCoord& c) { return c[0] == 0; });
+    const StrengthSettings settings = settings_with(rubbery(2000.0, 0.35));
+    const StrengthReport together = analyze_strength(model, cases, settings);
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+        CAPTURE(c);
+        const StrengthReport alone = analyze_strength(model, {cases[c]}, settings);
+        CHECK(alone.cases[0].max_displacement_mm > 0.0);
+        CHECK(together.cases[c].max_displacement_mm == Approx(alone.cases[0].max_displacement_mm).epsilon(1e-9));
+        CHECK(together.cases[c].stress_sum.max_pa == Approx(alone.cases[0].stress_sum.max_pa).epsilon(1e-6));
+    }
+    CHECK(together.cases[1].max_displacement_mm > 2.0 * together.cases[0].max_displacement_mm);
 }
 
 TEST_CASE("strength: the same report on any number of threads", "[strength]") {
