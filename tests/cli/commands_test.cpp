@@ -458,6 +458,38 @@ TEST_CASE("cli: verify of a carved package takes the loads that it was carved fo
           found.out);
 }
 
+TEST_CASE("cli: verify knows parts of the model where the carved package keeps it", "[cli]") {
+    const TemporaryFolder folder;
+    const TriangleMesh vase = testing::make_vase(50.0, 32, 16);
+    std::string obj = write_mesh({vase}, MeshFormat::kObj);
+    std::size_t half = obj.find("\nf ");
+    for (std::size_t t = 0; t < vase.triangles.size() / 2; ++t) half = obj.find("\nf ", half + 1);
+    obj.insert(half, "\no rest");
+    obj.insert(obj.find("\nf "), "\no foot");
+    spit(folder / "vase.obj", obj);
+    spit(folder / "spec.toml",
+         "[exemplar]\npattern = \"cells\"\n[shell]\nresolution = 32\n[structure]\nmax_iterations = 1\nsamples = 60\n"
+         "[[loads]]\nname = \"push\"\nshape = \"named\"\nnames = \"rest\"\nforce_n = [0, 5, 0]\n"
+         "[[fixtures]]\nname = \"foot\"\nshape = \"named\"\nnames = \"foot\"\n");
+    const auto verified = [&](const char* source) {
+        const ProgramResult carved =
+            run_program({"carve", folder / "vase.obj", "--pattern", folder / "spec.toml", "--preset", "draft", "-D",
+                         std::string("output.source=") + source, "-o", folder / "out.3mf"});
+        CAPTURE(carved.err);
+        REQUIRE(carved.exit_code == 0);
+        return run_program({"verify", folder / "out.3mf", "--json", "--resolution", "48"});
+    };
+    const ProgramResult with_model = verified("true");
+    CAPTURE(with_model.err);
+    REQUIRE(with_model.exit_code == 0);
+    const Json strength = Json::parse(with_model.out)["strength"];
+    REQUIRE(strength["cases"].size() == 1);
+    CHECK(strength["cases"][0]["applied_n"][1].get<double>() == Approx(5.0));
+    const ProgramResult without_model = verified("false");
+    CHECK(without_model.exit_code != 0);
+    CHECK_THAT(without_model.err, Catch::Contains("region 'push'"));
+}
+
 TEST_CASE("cli: carve --strict counts what is against printing", "[cli]") {
     const TemporaryFolder folder;
     write_mesh(std::filesystem::path(folder / "ball.stl"), {testing::make_icosphere(10.0, 4)});
