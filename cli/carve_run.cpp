@@ -20,12 +20,12 @@ namespace {
 constexpr std::size_t kViewTriangles = 60000;
 
 CarveInput input_of(const CarveModel& model, CarveTarget& target, const Settings& settings, PictureFiles& pictures) {
-    ChosenExemplar chosen = exemplar_of(settings, pictures);
+    const ChosenExemplar& chosen = exemplar_of(settings, pictures);
     CarveInput input;
     input.mesh = std::move(target.mesh);
     input.triangle_colors = std::move(target.triangle_colors);
     input.model_name = model.file.name;
-    input.exemplar = std::move(chosen.exemplar);
+    input.exemplar = chosen.exemplar;
     input.exemplar_width_mm = chosen.natural_width_mm;
     input.exemplar_name = chosen.name;
     input.named_triangles = target.named_triangles;

@@ -119,7 +119,7 @@ MeshBytes carved_bytes(const CarvedModel& result, const std::string& path, MeshF
 std::string preview_png(const CarvedModel& result, const RunControl& run) {
     RenderSettings picture;
     if (result.settings.synthesis.preset == Preset::kDraft) {
-        picture.width = picture.height = 640;
+        picture.width = picture.height = 512;
         picture.samples_per_axis = 2;
         picture.quick = true;
     }

@@ -72,6 +72,18 @@ void add_named_flags(const PatternOptions& options, SpecDocument& document) {
     if (!options.preset.empty()) document.assignments.push_back({"synthesis.preset", options.preset, "--preset"});
 }
 
+ChosenExemplar make_exemplar(const ExemplarOptions& options, PictureFiles& pictures) {
+    if (!options.pattern.empty()) return builtin_exemplar(options);
+    if (options.image.empty())
+        throw InvalidSetting(
+            "no pattern: give --pattern NAME (fretwork pattern list), --pattern SPEC.toml or --exemplar IMAGE");
+    exemplar_settings(options);  // complains about contradictions before anything is read
+    const Image picture = read_image(pictures.bytes_of(options.image), options.image);
+    if (options.mask.empty()) return picture_exemplar(options, picture, nullptr);
+    const Image mask = read_image(pictures.bytes_of(options.mask), options.mask);
+    return picture_exemplar(options, picture, &mask);
+}
+
 }  // namespace
 
 void add_setting_flags(CLI::App& command, PatternOptions& o) {
@@ -155,17 +167,9 @@ ChosenExemplar exemplar_of(const Settings& settings) {
     return exemplar_of(settings, pictures);
 }
 
-ChosenExemplar exemplar_of(const Settings& settings, PictureFiles& pictures) {
+const ChosenExemplar& exemplar_of(const Settings& settings, PictureFiles& pictures) {
     const ExemplarOptions& options = settings.exemplar;
-    if (!options.pattern.empty()) return builtin_exemplar(options);
-    if (options.image.empty())
-        throw InvalidSetting(
-            "no pattern: give --pattern NAME (fretwork pattern list), --pattern SPEC.toml or --exemplar IMAGE");
-    exemplar_settings(options);  // complains about contradictions before anything is read
-    const Image picture = read_image(pictures.bytes_of(options.image), options.image);
-    if (options.mask.empty()) return picture_exemplar(options, picture, nullptr);
-    const Image mask = read_image(pictures.bytes_of(options.mask), options.mask);
-    return picture_exemplar(options, picture, &mask);
+    return pictures.exemplar(options, [&] { return make_exemplar(options, pictures); });
 }
 
 std::vector<std::string> files_read(const PatternOptions& options, const PictureFiles& pictures) {

@@ -46,10 +46,10 @@ SpecDocument anchored(const std::string& file, SpecDocument document);
 /// Whether --pattern names a spec rather than a built-in pattern.
 bool names_spec(const std::string& pattern);
 
-/// Reads or draws the exemplar that the settings name.
+/// Reads or draws the exemplar that the settings name; valid until `pictures` is asked for another.
 /// \throws InvalidSetting  none is named.
 ChosenExemplar exemplar_of(const Settings& settings);
-ChosenExemplar exemplar_of(const Settings& settings, PictureFiles& pictures);
+const ChosenExemplar& exemplar_of(const Settings& settings, PictureFiles& pictures);
 
 /// Every file that the settings were made from, and the pictures.
 std::vector<std::string> files_read(const PatternOptions& options, const PictureFiles& pictures);

@@ -18,6 +18,12 @@ const std::string& PictureFiles::bytes_of(const std::string& path) {
     return read_.emplace_back(path, std::move(bytes)).second;
 }
 
+const ChosenExemplar& PictureFiles::exemplar(const ExemplarOptions& options,
+                                             const std::function<ChosenExemplar()>& make) {
+    if (!made_ || made_->first != options) made_.emplace(options, make());
+    return made_->second;
+}
+
 std::vector<RunFile> PictureFiles::files(bool keep) const {
     std::vector<RunFile> files;
     for (const auto& [path, bytes] : read_) files.push_back(run_file(path, bytes, keep));

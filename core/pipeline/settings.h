@@ -72,6 +72,8 @@ struct ExemplarOptions {
     std::optional<bool> tileable;
     std::optional<double> width_mm;  ///< real width of the picture on the surface
     int max_side_px = 1024;
+
+    bool operator==(const ExemplarOptions&) const = default;
 };
 
 /// Voxels along the longest side where neither their number nor their size is asked for.

@@ -45,7 +45,7 @@ PatternPictures draw_animalskin() {
     const Ink spot = ink(0x2A1A10), spot_core = ink(0x3B2415);
     return draw(192, 192, [&](const Vec2& p) -> Sample {
         double outside = std::numeric_limits<double>::infinity(), middle = outside;
-        for (const Stroke& b : blobs) outside = std::min(outside, b.distance(p, torus));
+        for (const Stroke& b : blobs) outside = std::min(outside, b.distance(p, torus, outside));
         for (const Vec2& c : centers) middle = std::min(middle, torus.shortest(p - c).norm());
         if (outside < 0) return {-outside, mix(spot, spot_core, -outside / 4)};
         // The coat is darker inside a rosette, as on the animal.

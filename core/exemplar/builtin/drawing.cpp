@@ -174,10 +174,10 @@ Stroke::Stroke(std::vector<Vec2> points, std::vector<double> radius)
     }
 }
 
-double Stroke::distance(const Vec2& p, const Torus& torus) const {
+double Stroke::distance(const Vec2& p, const Torus& torus, double most) const {
     const Vec2 q = torus.shortest(p - center_);
     const double away = q.norm() - reach_;
-    if (away > kNear) return away;
+    if (away > kNear || away >= most) return std::min(away, most);
     // A hair, so that rounding never rules out what holds the nearest point.
     constexpr double kHair = 1e-9;
     const auto is_beyond = [&](const Vec2& center, double reach, double best) {
@@ -187,7 +187,7 @@ double Stroke::distance(const Vec2& p, const Torus& torus) const {
     // Whatever comes first shows that most of the rest is farther away.
     const auto near_first =
         std::ranges::min_element(runs_, {}, [&](const Run& run) { return (q - run.center).squaredNorm(); });
-    double best = std::numeric_limits<double>::infinity();
+    double best = most;
     const auto look_at = [&](const Run& run) {
         if (is_beyond(run.center, run.reach, best)) return;
         for (std::size_t i = run.first; i < run.last; ++i) {
@@ -201,6 +201,12 @@ double Stroke::distance(const Vec2& p, const Torus& torus) const {
     for (const Run& run : runs_)
         if (&run != &*near_first) look_at(run);
     return best;
+}
+
+double joined(double distance, const Stroke& stroke, const Vec2& p, const Torus& torus, double k) {
+    // What is farther by more than k has no say.
+    constexpr double kHair = 1e-9;
+    return smooth_min(distance, stroke.distance(p, torus, distance + k + kHair), k);
 }
 
 std::vector<Vec2> spline(const std::vector<Vec2>& knots, int steps, bool closed) {

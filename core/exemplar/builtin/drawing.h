@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "core/base/vec.h"
@@ -65,8 +66,9 @@ class Stroke {
     Stroke(std::vector<Vec2> points, std::vector<double> radius);
 
     /// Distance of `p`, taken to the nearest copy of the stroke on the torus. Exact near the stroke,
-    /// a lower bound farther than `kNear` px away.
-    [[nodiscard]] double distance(const Vec2& p, const Torus& torus) const;
+    /// a lower bound farther than `kNear` px away, or `most` where that is no more than the distance.
+    [[nodiscard]] double distance(const Vec2& p, const Torus& torus,
+                                  double most = std::numeric_limits<double>::infinity()) const;
 
     static constexpr double kNear = 24.0;
 
@@ -86,6 +88,9 @@ class Stroke {
     double reach_ = 0;   ///< from the centre to the farthest point of the stroke
     double widest_ = 0;  ///< largest radius
 };
+
+/// smooth_min of `distance` and that to a stroke.
+double joined(double distance, const Stroke& stroke, const Vec2& p, const Torus& torus, double k);
 
 /// Points along a Catmull-Rom spline through `knots`, `steps` per span.
 [[nodiscard]] std::vector<Vec2> spline(const std::vector<Vec2>& knots, int steps, bool closed);

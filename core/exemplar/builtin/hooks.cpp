@@ -53,7 +53,7 @@ PatternPictures draw_hooks() {
     return draw(kWidth, kHeight, [&](const Vec2& pixel) {
         const Vec2 p = pixel + corner;
         double distance = std::numeric_limits<double>::infinity();
-        for (const Stroke& s : canes) distance = std::min(distance, s.distance(p, torus));
+        for (const Stroke& s : canes) distance = std::min(distance, s.distance(p, torus, distance));
         return shade(distance, relief);
     });
 }

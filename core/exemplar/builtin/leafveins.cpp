@@ -52,7 +52,7 @@ PatternPictures draw_leafveins() {
     const Relief relief{ink(0x7FA83B), ink(0xCBE283), ink(0x0F2A1A), ink(0x1E4A2C), 5.0, 8.0};
     return draw(static_cast<int>(kSide), static_cast<int>(kSide), [&](const Vec2& p) {
         double distance = Stroke::kNear;
-        for (const Stroke& v : veins) distance = smooth_min(distance, v.distance(p, torus), 7.0);
+        for (const Stroke& v : veins) distance = joined(distance, v, p, torus, 7.0);
         return shade(distance, relief);
     });
 }

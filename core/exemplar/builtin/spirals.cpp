@@ -50,7 +50,7 @@ PatternPictures draw_spirals() {
     return draw(192, 166, [&](const Vec2& pixel) {
         const Vec2 p = pixel + corner;
         double distance = Stroke::kNear;
-        for (const Stroke& s : strokes) distance = smooth_min(distance, s.distance(p, torus), 1.5);
+        for (const Stroke& s : strokes) distance = joined(distance, s, p, torus, 1.5);
         return shade(distance, relief);
     });
 }
