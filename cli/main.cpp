@@ -5,11 +5,25 @@
 #include <cstdio>
 #include <cstdlib>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include "cli/command.h"
 #include "core/base/detached.h"
 #include "core/pipeline/carve.h"
 
 namespace {
+
+/// Stages hand large arrays on to each other: what one has given back serves the next, instead of fresh pages that the
+/// system has to clear.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+    constexpr int kLargestKept = 32 << 20;  // the most that glibc allows
+    mallopt(M_MMAP_THRESHOLD, kLargestKept);
+    mallopt(M_TRIM_THRESHOLD, -1);
+#endif
+}
 
 int report_usage(const CLI::App& program, const CLI::ParseError& error) {
     // Help and version are not mistakes, and are what was asked for: they go to stdout.
@@ -23,6 +37,7 @@ int report_usage(const CLI::App& program, const CLI::ParseError& error) {
 // NOLINTNEXTLINE(bugprone-exception-escape): nothing but running out of memory can throw before the parser
 int main(int argc, char** argv) {
     using namespace fretwork::cli;
+    keep_freed_memory();
     CLI::App program("Carves a pattern, given by an example picture, through the shell of an object.", "fretwork");
     program.set_version_flag("--version", "fretwork " + fretwork::version());
     program.require_subcommand(1);
