@@ -8,15 +8,14 @@
 #include "core/base/error.h"
 #include "core/enlarge/geodesic_links.h"
 #include "core/enlarge/join_islands.h"
+#include "core/enlarge/opening.h"
 #include "core/enlarge/ridge_skeleton.h"
+#include "core/enlarge/settle_widths.h"
 
 namespace fretwork {
 namespace {
 
 constexpr const char* kStage = "enlarge";
-
-/// Sums of links of one voxel come out a little under or over the half widths they are compared with.
-constexpr float kSlack = 1e-3F;
 
 /// The border is drawn later, between voxels, and may cut a little deeper than the states say: features are that much
 /// wider here, in voxels, so that what is printed has the asked width.
@@ -63,7 +62,6 @@ class Enlarger {
         : shell_(shell),
           run_(run),
           links_(links),
-          disc_(links_),
           feature_(feature_voxels),
           hole_(hole_voxels),
           solid_(shell.size(), 0),
@@ -86,16 +84,12 @@ class Enlarger {
         drop_hairs();
         fill_bare_components();
         run_.checkpoint(kStage, 0.5);
-        // From here on voxels only become solid, so the loop ends.
-        double done = 0.5;
-        for (bool changed = true; changed;) {
-            changed = join_pieces();
-            changed = fill_narrow_holes() || changed;
-            changed = widen_thin_places() || changed;
-            done += 0.5 * (1.0 - done);
-            run_.checkpoint(kStage, done);
-        }
-        result_.components = face_components(shell_, solid_).count();
+        const SettleCounts settled =
+            settle_widths(shell_, links_, solid_, may_fill_, feature_, hole_, run_.slice(0.5, 1.0));
+        result_.voxels_enlarged += settled.enlarged;
+        result_.voxels_filled = settled.filled;
+        result_.islands_joined = settled.joined;
+        result_.components = settled.components;
         result_.solid.resize(shell_.size());
         for (std::size_t v = 0; v < shell_.size(); ++v)
             result_.solid[v] = solid_[v] != 0 ? SolidState::kSolid : SolidState::kEmpty;
@@ -108,23 +102,6 @@ class Enlarger {
         VoxelMask mask(solid_.size());
         for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = solid_[v] == 0 ? 1 : 0;
         return mask;
-    }
-
-    /// Voxels of a set that lie in a disc of `width` voxels inside the set: its morphological opening. A disc that
-    /// touches the border has its centre half a width from it, which is half a width from the first voxel outside
-    /// less the half voxel by which that voxel's centre lies beyond; an even width centres its disc between two
-    /// voxels, which the missing half allows for.
-    [[nodiscard]] VoxelMask opened(const VoxelMask& outside, const std::vector<float>& distance_to_outside,
-                                   double width) const {
-        const auto radius = static_cast<float>(0.5 * width);
-        VoxelMask core(outside.size(), 0);
-        for (std::size_t v = 0; v < core.size(); ++v)
-            core[v] = outside[v] == 0 && distance_to_outside[v] >= radius - kSlack ? 1 : 0;
-        const std::vector<float> to_core = geodesic_distance(links_, core, radius, run_);
-        VoxelMask covered(outside.size(), 0);
-        for (std::size_t v = 0; v < core.size(); ++v)
-            covered[v] = outside[v] == 0 && to_core[v] < radius - kSlack ? 1 : 0;
-        return covered;
     }
 
     std::size_t make_solid(VoxelIndex v) {
@@ -180,14 +157,14 @@ class Enlarger {
         const VoxelMask outside = empty();
         const std::vector<float> to_empty = geodesic_distance(links_, outside, radius + 1.0, run_);
         const SkeletonSettings settings{
-            .core_radius_voxels = radius - kSlack,
+            .core_radius_voxels = radius - kWidthSlack,
             .shortest_leaf_voxels = feature_,
             // A ring of the printable width around a printable hole is not shorter.
             .shortest_loop_voxels = std::numbers::pi * (feature_ + hole_),
         };
         const VoxelMask skeleton =
-            ridge_skeleton(shell_, solid_, to_empty, opened(outside, to_empty, feature_), settings, run_);
-        const std::vector<float> to_skeleton = geodesic_distance(links_, skeleton, radius + kSlack, run_);
+            ridge_skeleton(shell_, solid_, to_empty, opened(links_, outside, to_empty, feature_, run_), settings, run_);
+        const std::vector<float> to_skeleton = geodesic_distance(links_, skeleton, radius + kWidthSlack, run_);
         for (VoxelIndex v = 0; v < shell_.size(); ++v)
             if (to_skeleton[v] != kBeyondReach) result_.voxels_enlarged += make_solid(v);
     }
@@ -196,61 +173,14 @@ class Enlarger {
     void drop_hairs() {
         const VoxelMask outside = empty();
         const std::vector<float> to_empty = geodesic_distance(links_, outside, 0.5 * feature_ + 1.0, run_);
-        const VoxelMask covered = opened(outside, to_empty, feature_);
+        const VoxelMask covered = opened(links_, outside, to_empty, feature_, run_);
         for (std::size_t v = 0; v < shell_.size(); ++v)
             if (solid_[v] != 0 && covered[v] == 0 && may_clear_[v] != 0) clear(v);
-    }
-
-    bool join_pieces() {
-        std::size_t added = 0;
-        for (const VoxelIndex v : hinge_fillers(shell_, solid_, may_fill_)) added += make_solid(v);
-        const FaceComponents pieces = face_components(shell_, solid_);
-        const IslandLinks links = link_islands(shell_, pieces, may_fill_, run_);
-        for (const VoxelIndex v : links.path)
-            disc_.visit(v, 0.5 * feature_ + kSlack, [&](VoxelIndex u, float) { added += make_solid(u); });
-        if (added > 0) result_.islands_joined += links.joined;
-        result_.voxels_enlarged += added;
-        return added > 0;
-    }
-
-    bool fill_narrow_holes() {
-        const std::vector<float> to_solid = geodesic_distance(links_, solid_, 0.5 * hole_ + 1.0, run_);
-        const VoxelMask wide = opened(solid_, to_solid, hole_);
-        std::size_t added = 0;
-        for (VoxelIndex v = 0; v < shell_.size(); ++v)
-            if (solid_[v] == 0 && wide[v] == 0) added += make_solid(v);
-        result_.voxels_filled += added;
-        return added > 0;
-    }
-
-    /// Filled corners and kept regions may be thin; each such voxel gets a disc, centred within reach where the
-    /// solid is already widest.
-    bool widen_thin_places() {
-        const VoxelMask outside = empty();
-        const std::vector<float> to_empty = geodesic_distance(links_, outside, 0.5 * feature_ + 1.0, run_);
-        VoxelMask covered = opened(outside, to_empty, feature_);
-        const double radius = 0.5 * feature_;
-        std::size_t added = 0;
-        for (VoxelIndex v = 0; v < shell_.size(); ++v) {
-            if (outside[v] != 0 || covered[v] != 0) continue;
-            run_.throw_if_stopped();
-            VoxelIndex center = v;
-            disc_.visit(v, radius - 2.0 * kSlack, [&](VoxelIndex u, float) {
-                if (outside[u] == 0 && to_empty[u] > to_empty[center]) center = u;
-            });
-            disc_.visit(center, radius + kSlack, [&](VoxelIndex u, float d) {
-                added += make_solid(u);
-                if (d < radius - kSlack) covered[u] = 1;
-            });
-        }
-        result_.voxels_enlarged += added;
-        return added > 0;
     }
 
     const SurfaceVoxels& shell_;
     const RunControl& run_;
     const GeodesicLinks& links_;
-    GeodesicDisc disc_;
     double feature_;
     double hole_;
     VoxelMask solid_;

@@ -6,6 +6,8 @@
 #include <queue>
 #include <tuple>
 
+#include "core/base/parallel.h"
+
 namespace fretwork {
 namespace {
 
@@ -20,14 +22,13 @@ int coordinate_steps(const SurfaceVoxels& shell, VoxelIndex a, VoxelIndex b) {
     return steps;
 }
 
-bool share_face(const SurfaceVoxels& shell, VoxelIndex a, VoxelIndex b) {
-    return coordinate_steps(shell, a, b) == 1;
-}
+/// Voxels that must become solid.
+using Detour = std::vector<VoxelIndex>;
 
 /// The face neighbours of both ends of an edge contact, or the two-voxel detours of a corner contact: first the
 /// ones that need the fewest new voxels, then the lowest indices. Empty when a solid detour exists or none at all.
-std::vector<VoxelIndex> cheapest_detour(const SurfaceVoxels& shell, const VoxelMask& solid, const VoxelMask& may_change,
-                                        VoxelIndex a, VoxelIndex b) {
+Detour cheapest_detour(const SurfaceVoxels& shell, const VoxelMask& solid, const VoxelMask& may_change, VoxelIndex a,
+                       VoxelIndex b) {
     std::tuple<int, VoxelIndex, VoxelIndex> best(3, kNone, kNone);
     const auto usable = [&](VoxelIndex v) { return solid[v] != 0 || may_change[v] != 0; };
     const bool corner = coordinate_steps(shell, a, b) == 3;
@@ -44,10 +45,32 @@ std::vector<VoxelIndex> cheapest_detour(const SurfaceVoxels& shell, const VoxelM
                 std::ranges::binary_search(shell.adjacency.of(d), b))
                 best = std::min(best, {cost + (solid[d] != 0 ? 0 : 1), c, d});
     }
-    std::vector<VoxelIndex> fillers;
+    Detour fillers;
     for (const VoxelIndex v : {std::get<1>(best), std::get<2>(best)})
         if (v != kNone && solid[v] == 0) fillers.push_back(v);
     return fillers;
+}
+
+/// Calls `fill` with the voxels that a hinge between `a` and a later voxel asks for, while it returns true.
+/// \return whether all of them have been looked at
+template <class Fill>
+bool hinges_at(const SurfaceVoxels& shell, const VoxelMask& solid, const VoxelMask& may_change, VoxelIndex a,
+               const Fill& fill) {
+    const std::span<const VoxelIndex> around = shell.adjacency.of(a);
+    for (const VoxelIndex b : around) {
+        if (b < a || solid[b] == 0 || coordinate_steps(shell, a, b) < 2) continue;
+        // A corner contact is no hinge where a third solid voxel holds both by faces or edges: those contacts
+        // are looked at by themselves.
+        const bool held = coordinate_steps(shell, a, b) == 3 && std::ranges::any_of(around, [&](VoxelIndex c) {
+                              return solid[c] != 0 && c != b && coordinate_steps(shell, a, c) <= 2 &&
+                                     coordinate_steps(shell, c, b) <= 2 &&
+                                     std::ranges::binary_search(shell.adjacency.of(c), b);
+                          });
+        if (held) continue;
+        const Detour detour = cheapest_detour(shell, solid, may_change, a, b);
+        if (!detour.empty() && !fill(detour)) return false;
+    }
+    return true;
 }
 
 std::uint32_t root_of(std::vector<std::uint32_t>& leader, std::uint32_t a) {
@@ -107,6 +130,10 @@ Territory grow_territories(const SurfaceVoxels& shell, const FaceComponents& pie
 
 }  // namespace
 
+bool share_face(const SurfaceVoxels& shell, VoxelIndex a, VoxelIndex b) {
+    return coordinate_steps(shell, a, b) == 1;
+}
+
 FaceComponents face_components(const SurfaceVoxels& shell, const VoxelMask& set) {
     FaceComponents result;
     result.of_voxel.assign(shell.size(), FaceComponents::kOutside);
@@ -133,27 +160,24 @@ FaceComponents face_components(const SurfaceVoxels& shell, const VoxelMask& set)
     return result;
 }
 
-std::vector<VoxelIndex> hinge_fillers(const SurfaceVoxels& shell, const VoxelMask& solid, const VoxelMask& may_change) {
+std::vector<VoxelIndex> hinge_fillers(const SurfaceVoxels& shell, const VoxelMask& solid, const VoxelMask& may_change,
+                                      std::span<const VoxelIndex> at) {
+    // What holds without fillers holds with them: only the others are looked at one after the other.
+    std::vector<std::uint8_t> hinges(at.size(), 0);
+    parallel_for(at.size(), 1 << 12, [&](std::size_t i) {
+        hinges[i] = !hinges_at(shell, solid, may_change, at[i], [](const Detour&) { return false; });
+    });
     std::vector<VoxelIndex> fillers;
     VoxelMask filled = solid;
-    for (VoxelIndex a = 0; a < shell.size(); ++a) {
-        if (solid[a] == 0) continue;
-        const std::span<const VoxelIndex> around = shell.adjacency.of(a);
-        for (const VoxelIndex b : around) {
-            if (b < a || solid[b] == 0 || coordinate_steps(shell, a, b) < 2) continue;
-            // A corner contact is no hinge where a third solid voxel holds both by faces or edges: those contacts
-            // are looked at by themselves.
-            const bool held = coordinate_steps(shell, a, b) == 3 && std::ranges::any_of(around, [&](VoxelIndex c) {
-                                  return filled[c] != 0 && c != b && coordinate_steps(shell, a, c) <= 2 &&
-                                         coordinate_steps(shell, c, b) <= 2 &&
-                                         std::ranges::binary_search(shell.adjacency.of(c), b);
-                              });
-            if (held) continue;
-            for (const VoxelIndex v : cheapest_detour(shell, filled, may_change, a, b)) {
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        if (hinges[i] == 0) continue;
+        hinges_at(shell, filled, may_change, at[i], [&](const Detour& detour) {
+            for (const VoxelIndex v : detour) {
                 filled[v] = 1;
                 fillers.push_back(v);
             }
-        }
+            return true;
+        });
     }
     std::sort(fillers.begin(), fillers.end());
     return fillers;

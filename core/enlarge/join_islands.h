@@ -20,11 +20,16 @@ struct FaceComponents {
     [[nodiscard]] std::size_t count() const { return area_voxels.size(); }
 };
 
+/// Whether two linked voxels lie side by side.
+bool share_face(const SurfaceVoxels& shell, VoxelIndex a, VoxelIndex b);
+
 FaceComponents face_components(const SurfaceVoxels& shell, const VoxelMask& set);
 
 /// Voxels to be made solid so that no two solid voxels hold together by an edge or a corner alone. Ascending.
 /// \param may_change  voxels that may become solid
-std::vector<VoxelIndex> hinge_fillers(const SurfaceVoxels& shell, const VoxelMask& solid, const VoxelMask& may_change);
+/// \param at          solid voxels, ascending: of each contact that is looked at, both are among them
+std::vector<VoxelIndex> hinge_fillers(const SurfaceVoxels& shell, const VoxelMask& solid, const VoxelMask& may_change,
+                                      std::span<const VoxelIndex> at);
 
 struct IslandLinks {
     std::vector<VoxelIndex> path;  ///< voxels on the joining paths, ends included

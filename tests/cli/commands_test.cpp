@@ -115,7 +115,7 @@ TEST_CASE("cli: carve writes summary, preview and dependencies", "[cli]") {
     CHECK(summary["settings"]["shell"]["thickness_mm"] == 4.5);  // -D wins over the spec
     CHECK(summary["seed"] == 5);                                 // -P wins over the default
     CHECK(summary["printability"]["one_piece"] == true);
-    CHECK(read_image(std::filesystem::path(folder / "out.png")).width == 640);  // of a draft; 1200 else
+    CHECK(read_image(std::filesystem::path(folder / "out.png")).width == 512);  // of a draft; 1200 else
     const std::string rule = slurp(folder / "out.d");
     CHECK(rule.starts_with((folder / "out.stl") + ":"));
     CHECK(rule.find("my\\ vase.off") != std::string::npos);

@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/enlarge/geodesic_links.h"
+#include "core/enlarge/settle_widths.h"
 #include "core/shell/voxelize.h"
 #include "support/make_meshes.h"
 
@@ -258,6 +259,32 @@ TEST_CASE("enlarge: keeps every promise on random patterns", "[enlarge][property
         check_promises(shell, enlarge(shell, paint(shell, random_blobs(seed, 9.0)), {}, settings), settings,
                        on_sphere(radius));
     }
+}
+
+TEST_CASE("enlarge: what has settled around changes has settled everywhere", "[enlarge][property]") {
+    const std::uint64_t seed = GENERATE(1, 2, 3, 4);
+    const double wavelength_mm = GENERATE(1.5, 4.0);
+    const SurfaceVoxels shell = voxelize(make_icosphere(10.0, 4), {.resolution = 80});
+    const GeodesicLinks links = link_two_rings(shell);
+    const SolidStates start = paint(shell, random_blobs(seed, wavelength_mm));
+    VoxelMask solid(shell.size()), may_fill(shell.size());
+    for (std::size_t v = 0; v < shell.size(); ++v) {
+        solid[v] = start[v] == SolidState::kSolid ? 1 : 0;
+        may_fill[v] = 1 - solid[v];
+    }
+    constexpr double kFeature = 4.5, kHole = 5.0;  // voxels
+    const SettleCounts first = settle_widths(shell, links, solid, may_fill, kFeature, kHole, {});
+    CHECK(first.enlarged > 0);
+    CHECK(first.filled > 0);
+    CHECK(first.components == 1);
+    // The first round of another call looks at the whole shell.
+    const VoxelMask settled = solid;
+    const SettleCounts again = settle_widths(shell, links, solid, may_fill, kFeature, kHole, {});
+    CHECK(again.enlarged == 0);
+    CHECK(again.filled == 0);
+    CHECK(again.joined == 0);
+    CHECK(again.components == 1);
+    CHECK(solid == settled);
 }
 
 TEST_CASE("enlarge: drops specks, joins islands, counts both", "[enlarge]") {
