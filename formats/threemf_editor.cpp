@@ -17,7 +17,7 @@
 #include "formats/threemf_model_edit.h"
 #include "formats/threemf_model_reader.h"
 #include "formats/threemf_names.h"
-#include "formats/threemf_old_voxels.h"
+#include "formats/threemf_old_carve.h"
 #include "formats/zip_writer.h"
 
 namespace fretwork {
@@ -34,7 +34,7 @@ constexpr std::uint64_t kMaxSmallPartBytes = 8 << 20;
 struct EditedPart {
     std::string xml;
     ModelLayout layout;  ///< refers to `xml`
-    threemf::OldVoxels old_voxels;
+    threemf::OldCarve old_carve;
 };
 
 /// What becomes of the parts of an archive: some are replaced, the rest is copied, more follow.
@@ -112,15 +112,15 @@ struct ThreemfEditor::Impl {
             find(key);
         }
         look_at_volumes();
-        for (auto& [name, part] : parts) find_old_voxels(name, part);
+        for (auto& [name, part] : parts) find_old_carve(name, part);
     }
 
-    void find_old_voxels(const std::string& name, EditedPart& part) {
+    void find_old_carve(const std::string& name, EditedPart& part) {
         std::set<threemf::ResourceId> here;
         for (const ObjectKey& key : carved)
             if (key.part == name) here.insert(key.id);
-        part.old_voxels = threemf::old_voxels_of(part.xml, part.layout, here);
-        for (const std::string& sheet : part.old_voxels.sheets) old_sheets.insert(lower_case(sheet.substr(1)));
+        part.old_carve = threemf::old_carve_of(part.xml, part.layout, here);
+        for (const std::string& sheet : part.old_carve.sheets) old_sheets.insert(lower_case(sheet.substr(1)));
     }
 
     void open_part(const std::string& name) {
@@ -203,20 +203,20 @@ class EditRun {
             const TrianglePaint& paint = edit_.objects[i].object.paint;
             painted = painted || (paint.format == PaintFormat::kPrusa && !paint.extruders.empty());
             if (edit_.objects[i].key.part != name) continue;
-            model.replace_mesh(edit_.objects[i].key.id, texts_[i]);
+            model.replace_mesh(edit_.objects[i].key.id, texts_[i], part.old_carve.ids);
             add_sheets(texts_[i], sheets);
         }
-        for (const TextSpan& old : part.old_voxels.elements) model.drop(old);
+        for (const TextSpan& old : part.old_carve.elements) model.drop(old);
         if (root) {
             model.add_metadata(metadata_of(edit_.record));
             if (painted) add_slicer_versions(part.layout, model);
         }
         writer_.put(name, model.finish().deflated(run_));
-        if (sheets.empty() && part.old_voxels.sheets.empty()) return;
+        if (sheets.empty() && part.old_carve.sheets.empty()) return;
         const std::string relations = relations_part_of(name);
         paths_.push_back("/" + relations);
         std::set<std::string> old;
-        for (const std::string& sheet : part.old_voxels.sheets) old.insert(lower_case(sheet));
+        for (const std::string& sheet : part.old_carve.sheets) old.insert(lower_case(sheet));
         writer_.put(relations, with_relations(without_relations_to(writer_.text_of(relations), old), sheets));
     }
 

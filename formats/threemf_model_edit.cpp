@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "formats/text_scanner.h"
 #include "formats/threemf_names.h"
 #include "formats/threemf_values.h"
 #include "formats/xml_text.h"
@@ -97,7 +98,19 @@ void ModelEdit::set_attribute(const XmlTag& tag, std::string_view name, const st
     changes_.push_back({{end, end}, text, nullptr, {}});
 }
 
-void ModelEdit::replace_mesh(ResourceId id, CarvedObjectText& carved) {
+/// Where its colours are among what goes.
+void ModelEdit::drop_colors(const XmlTag& object, const std::set<ResourceId>& dropped) {
+    const std::vector<XmlAttributeSpan> attributes = attribute_spans(xml_, object);
+    const auto pid = std::ranges::find(attributes, "pid", &XmlAttributeSpan::name);
+    std::int64_t id = 0;
+    if (pid == attributes.end() || !parse_integer(xml_unescaped(pid->raw), id) || id < 0 ||
+        !dropped.contains(static_cast<ResourceId>(id)))
+        return;
+    for (const XmlAttributeSpan& attribute : attributes)
+        if (attribute.name == "pid" || attribute.name == "pindex") drop(attribute.span);
+}
+
+void ModelEdit::replace_mesh(ResourceId id, CarvedObjectText& carved, const std::set<ResourceId>& dropped) {
     const ObjectPlace& place = layout_.objects.at(id);
     const ModelDialect dialect = dialect_for(place, carved);
     const std::string resources = carved.resources(dialect, [this] { return next_id(); });
@@ -106,6 +119,8 @@ void ModelEdit::replace_mesh(ResourceId id, CarvedObjectText& carved) {
     if (carved.colored()) {
         set_attribute(place.object, "pid", std::to_string(carved.color_group()));
         set_attribute(place.object, "pindex", "0");
+    } else {
+        drop_colors(place.object, dropped);
     }
     if (place.volume) changes_.push_back({place.volume->span, {}, nullptr, {}});
     if (carved.volume() != 0) {

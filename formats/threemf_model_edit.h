@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,13 +20,14 @@ class ModelEdit {
   public:
     ModelEdit(std::string_view xml, const ModelLayout& layout, double units_per_mm);
 
-    void replace_mesh(ResourceId id, CarvedObjectText& carved);
+    /// \param dropped  resources that go: an object that is left without colours no longer names them
+    void replace_mesh(ResourceId id, CarvedObjectText& carved, const std::set<ResourceId>& dropped);
 
-    /// Names of the core specification, or those that start with "fw:" or "slic3rpe:"; one of the same name is
-    /// replaced.
     /// Leaves out what stands there.
     void drop(const TextSpan& span) { changes_.push_back({span, {}, nullptr, {}}); }
 
+    /// Names of the core specification, or those that start with "fw:" or "slic3rpe:"; one of the same name is
+    /// replaced.
     void add_metadata(const std::vector<std::pair<std::string, std::string>>& metadata);
 
     /// Call once, last.
@@ -44,6 +46,7 @@ class ModelEdit {
     ModelDialect dialect_for(const ObjectPlace& place, const CarvedObjectText& carved);
     ResourceId next_id();
     void set_attribute(const XmlTag& tag, std::string_view name, const std::string& value);
+    void drop_colors(const XmlTag& object, const std::set<ResourceId>& dropped);
     void change_model_tag();
 
     std::string_view xml_;

@@ -198,6 +198,61 @@ TEST_CASE("3mf editor: an object carved before is carved again without a clash",
     CHECK(part_of(twice, "3D/_rels/3dmodel.model.rels").size() == part_of(once, "3D/_rels/3dmodel.model.rels").size());
     CHECK(read_volumetric_threemf(twice, "p").size() == 1);
     CHECK(volume_mm3(read_threemf(twice, "p").mesh) == Approx(volume_mm3(read_threemf(once, "p").mesh)));
+    // So are its colours; what the project brought along is as it was.
+    CHECK_THAT(xml, Catch::Contains("<m2:colorgroup id=\"66\">") && !Catch::Contains("<m2:colorgroup id=\"62\">"));
+    CHECK((before(xml, "<!-- the wall -->") == before(part_of(once, kRoot), "<!-- the wall -->")));
+    CHECK((after(xml, "</mesh>") == after(part_of(once, kRoot), "</mesh>")));
+}
+
+/// A package with `what` written in one part behind the first `where` that follows `from`.
+std::string with_text(const std::string& package, const std::string& from, const std::string& where,
+                      const std::string& what) {
+    Parts parts;
+    const ZipReader zip(package, "p");
+    for (const auto& entry : zip.entries()) parts.emplace_back(entry.name, part_of(package, entry.name));
+    std::string& xml = std::ranges::find(parts, kRoot, &Parts::value_type::first)->second;
+    const std::size_t at = xml.find(where, xml.find(from));
+    REQUIRE(at != xml.npos);
+    xml.insert(at + where.size(), what);
+    return testing::make_zip(parts);
+}
+
+std::size_t count_of(const std::string& text, const std::string& mark) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(mark); at != text.npos; at = text.find(mark, at + 1)) ++count;
+    return count;
+}
+
+TEST_CASE("3mf editor: colours of an earlier carve go unless others use them, and no others go",
+          "[formats][threemf][lossless]") {
+    const Carving carving;
+    const std::string once = carving.of(make_project(), {{kRoot, 5}});
+    const auto groups_after = [&](const std::string& from, const std::string& where, const std::string& what) {
+        const std::string package = what.empty() ? once : with_text(once, from, where, what);
+        return count_of(part_of(carving.of(package, {{kRoot, 5}}), kRoot), "<m2:colorgroup id=");
+    };
+    CHECK(groups_after("", "", "") == 1);
+    // Another object, one of its triangles, a mixture, and an element of an extension that nobody knows.
+    CHECK(groups_after("name=\"post\"", "name=\"post\"", " pid=\"62\" pindex=\"0\"") == 2);
+    CHECK(groups_after("name=\"post\"", "<triangle", " pid=\"62\" p1=\"0\"") == 2);
+    CHECK(groups_after("", "<resources >", "<m2:multiproperties id=\"90\" pids=\"2 62\"/>") == 2);
+    CHECK(groups_after("", "<resources >", "<x:thing id=\"90\" x:fillid=\"62\"/>") == 2);
+    CHECK(groups_after("", "<resources >", "<x:thing id=\"90\" x:fillid=\"620\"/>") == 1);
+    // A group of the user's own that the object had before it was carved.
+    const std::string own = "<m2:colorgroup id=\"91\"><m2:color color=\"#010203\"/></m2:colorgroup>";
+    CHECK(groups_after("<!-- the wall -->", "<!-- the wall -->", own) == 2);
+    CHECK(groups_after("<v:image3d", "</v:volumedata>\n", own) == 2);
+
+    // Carved without colours, the object names no group that is gone.
+    ThreemfEdit edit;
+    edit.objects.push_back({{kRoot, 5}, {carving.box, {}, "", nullptr, &carving.sheets}});
+    const std::string plain = part_of(ThreemfEditor(once, "p", {{kRoot, 5}}).write(edit), kRoot);
+    CHECK(count_of(plain, "<m2:colorgroup id=") == 0);
+    CHECK_THAT(plain, Catch::Contains("x:more=\"&quot;\"><metadatagroup>"));
+    // One of the user's stays named.
+    const std::string red = with_text(make_project(), "name='wall'", "name='wall'", " pid=\"2\" pindex=\"0\"");
+    CHECK_THAT(part_of(ThreemfEditor(red, "p", {{kRoot, 5}}).write(edit), kRoot),
+               Catch::Contains("name='wall' pid=\"2\" pindex=\"0\""));
 }
 
 TEST_CASE("3mf editor: every image stack of an earlier carve goes, and names that are taken are not used again",
@@ -244,17 +299,7 @@ TEST_CASE("3mf editor: voxel data that others use, or that are not ours, stay in
     const std::string once = carving.of(make_project(), {{kRoot, 5}});
     /// Image stacks after a second carve, with `what` written behind the first `where` that follows `from` in between.
     const auto stacks_after = [&](const std::string& from, const std::string& where, const std::string& what) {
-        Parts parts;
-        const ZipReader zip(once, "p");
-        for (const auto& entry : zip.entries()) parts.emplace_back(entry.name, part_of(once, entry.name));
-        std::string& xml = std::ranges::find(parts, kRoot, &Parts::value_type::first)->second;
-        const std::size_t at = xml.find(where, xml.find(from));
-        REQUIRE(at != xml.npos);
-        xml.insert(at + where.size(), what);
-        const std::string twice = part_of(carving.of(testing::make_zip(parts), {{kRoot, 5}}), kRoot);
-        std::size_t stacks = 0;
-        for (std::size_t i = twice.find("<v:image3d"); i != twice.npos; i = twice.find("<v:image3d", i + 1)) ++stacks;
-        return stacks;
+        return count_of(part_of(carving.of(with_text(once, from, where, what), {{kRoot, 5}}), kRoot), "<v:image3d");
     };
     CHECK(stacks_after("<v:image3d", "<v:image3d", "") == 1);
     CHECK(stacks_after("name=\"spare\"", "<mesh", " v:volumeid=\"65\"") == 2);   // another object has them too

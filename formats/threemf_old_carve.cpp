@@ -1,6 +1,7 @@
-#include "formats/threemf_old_voxels.h"
+#include "formats/threemf_old_carve.h"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <utility>
 
@@ -27,10 +28,17 @@ std::string_view local_name(std::string_view name) {
     return name.substr(name.find(':') == name.npos ? 0 : name.find(':') + 1);
 }
 
+/// Whether an attribute holds the number of a resource, or a list of them. Extensions that are not known are taken to
+/// name theirs as all known ones do.
+bool is_reference(std::string_view attribute) {
+    return attribute != "id" && (attribute.ends_with("id") || attribute.ends_with("ids"));
+}
+
 /// Resources by number, and who refers to whom.
 class ReferenceScanner {
   public:
-    ReferenceScanner(std::string_view xml, const ModelLayout& layout) : xml_(xml), layout_(layout) {}
+    ReferenceScanner(std::string_view xml, const ModelLayout& layout, const std::set<ResourceId>& carved)
+        : xml_(xml), layout_(layout), carved_(carved) {}
 
     void scan() {
         XmlTagScanner scanner(xml_);
@@ -51,18 +59,35 @@ class ReferenceScanner {
 
     void enter(const XmlTag& tag, std::size_t depth) {
         const std::string_view name = tag.local_name();
-        if (name == "vertex" || name == "triangle") return;
+        if (name == "vertex" || (name == "triangle" && !triangle_may_refer(tag))) return;
         if (name == "implicitfunction") implicit_ = true;
         const std::vector<XmlAttributeSpan> attributes = attribute_spans(xml_, tag);
         if (depth == kResourceDepth) open(tag, attributes);
         for (const XmlAttributeSpan& attribute : attributes) {
             const std::string_view what = local_name(attribute.name);
-            if (what == "functionid" || what == "image3did" || what == "volumeid")
-                references_.emplace(current_, id_of(attribute.raw));
+            if (is_reference(what))
+                refer_to(attribute.raw);
             else if (name == "imagesheet" && what == "path")
                 resources_[current_].sheets.push_back(xml_unescaped(attribute.raw));
             else if (name == "property" && what == "name" && is_ours(xml_unescaped(attribute.raw)))
                 resources_[current_].own = true;
+        }
+    }
+
+    /// Those of carved objects go.
+    [[nodiscard]] bool triangle_may_refer(const XmlTag& tag) const {
+        return !carved_.contains(current_) &&
+               xml_.substr(tag.span.begin, tag.span.end - tag.span.begin).find("id") != xml_.npos;
+    }
+
+    void refer_to(std::string_view raw) {
+        const std::string ids = xml_unescaped(raw);
+        const char* const end = ids.data() + ids.size();
+        for (const char* at = ids.data(); at < end;) {
+            ResourceId id = 0;
+            const auto [behind, error] = std::from_chars(at, end, id);
+            if (error == std::errc{} && id > 0) references_.emplace(current_, id);
+            at = error == std::errc{} ? behind : at + 1;
         }
     }
 
@@ -87,6 +112,7 @@ class ReferenceScanner {
 
     std::string_view xml_;
     const ModelLayout& layout_;
+    const std::set<ResourceId>& carved_;
     std::map<ResourceId, Resource> resources_;
     std::set<std::pair<ResourceId, ResourceId>> references_;
     ResourceId current_ = 0;  ///< the resource in hand
@@ -97,7 +123,17 @@ bool lies_where_ours_do(const Resource& stack) {
     return std::ranges::all_of(stack.sheets, [](const std::string& path) { return stack_suffix_of(path).has_value(); });
 }
 
-/// Volume data of the carved objects and what they refer to, as far as it is ours.
+/// Whether it stands where we write the colours of an object: right before its first image stack.
+bool is_before_one_of(const Resource& group, const std::set<ResourceId>& ours,
+                      const std::map<ResourceId, Resource>& resources) {
+    return std::ranges::any_of(ours, [&](ResourceId id) {
+        const auto stack = resources.find(id);
+        return stack != resources.end() && stack->second.name == "image3d" &&
+               stack->second.span.begin == group.span.end;
+    });
+}
+
+/// Volume data and colours of the carved objects and what they refer to, as far as it is ours.
 std::set<ResourceId> ours_of(const ReferenceScanner& scanner, const std::set<ResourceId>& carved) {
     std::set<ResourceId> ours = carved;
     const auto follow = [&](std::string_view name, const auto& is_own) {
@@ -111,16 +147,17 @@ std::set<ResourceId> ours_of(const ReferenceScanner& scanner, const std::set<Res
     follow("volumedata", [](const Resource& volume) { return volume.own; });
     follow("functionfromimage3d", [](const Resource&) { return true; });
     follow("image3d", lies_where_ours_do);
+    follow("colorgroup", [&](const Resource& group) { return is_before_one_of(group, ours, scanner.resources()); });
     return ours;
 }
 
 }  // namespace
 
-OldVoxels old_voxels_of(std::string_view xml, const ModelLayout& layout, const std::set<ResourceId>& carved) {
-    OldVoxels old;
+OldCarve old_carve_of(std::string_view xml, const ModelLayout& layout, const std::set<ResourceId>& carved) {
+    OldCarve old;
     if (std::ranges::none_of(carved, [&](ResourceId id) { return layout.objects.at(id).volume.has_value(); }))
         return old;
-    ReferenceScanner scanner(xml, layout);
+    ReferenceScanner scanner(xml, layout, carved);
     scanner.scan();
     if (scanner.implicit()) return old;
     std::set<ResourceId> dropped = ours_of(scanner, carved);
@@ -134,6 +171,7 @@ OldVoxels old_voxels_of(std::string_view xml, const ModelLayout& layout, const s
         if (carved.contains(id)) continue;
         const Resource& resource = scanner.resources().at(id);
         old.elements.push_back(resource.span);
+        old.ids.insert(id);
         old.sheets.insert(old.sheets.end(), resource.sheets.begin(), resource.sheets.end());
     }
     return old;
