@@ -22,12 +22,13 @@ std::string same_file(const std::string& path, const RunFile& then, std::string_
 }
 
 /// Materials of an OBJ that the package only names lie beside the model that `source` names.
-std::vector<RunFile> with_bytes(std::vector<RunFile> materials, const std::string& source) {
-    for (RunFile& file : materials)
-        if (file.bytes.empty() && !source.empty())
-            file.bytes = same_file((std::filesystem::path(source).parent_path() / file.path).string(), file,
-                                   "the materials that were read");
-    return materials;
+void read_materials(const std::string& source, CarveRequest& request) {
+    for (RunFile& file : request.model.materials) {
+        if (!file.bytes.empty() || source.empty()) continue;
+        const std::string path = (std::filesystem::path(source).parent_path() / file.path).string();
+        file.bytes = same_file(path, file, "the materials that were read");
+        request.sources.push_back(path);
+    }
 }
 
 std::string model_bytes(RunFile& model, const std::string& package, const std::string& source) {
@@ -53,7 +54,9 @@ CarveRequest request_of_run(RunSource run, const std::string& package, const std
     request.model.unit = unit_named(run.model_unit);
     request.model.name = run.model.path;
     request.model.bytes = model_bytes(run.model, package, source);
-    request.model.materials = with_bytes(std::move(run.materials), source);
+    request.model.materials = std::move(run.materials);
+    if (!source.empty()) request.sources.push_back(source);
+    read_materials(source, request);
     request.pictures = PictureFiles(std::move(run.pictures));
     request.settings = settings_of(pattern, read_spec_toml(run.request_toml, package + ": request.toml"));
     if (run.version != version())

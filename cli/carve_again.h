@@ -14,6 +14,7 @@ struct CarveRequest {
     PictureFiles pictures;
     Settings settings;
     std::vector<std::string> warnings;
+    std::vector<std::string> sources;  ///< files of the model that were read beside a package
 };
 
 /// The model, pictures and settings of a record. \see request_of_package

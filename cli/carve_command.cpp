@@ -94,6 +94,7 @@ struct Opened {
 Opened open(const CarveOptions& options, const RunControl& run) {
     Opened opened{request_of(options, run), {}};
     opened.model = open_model(std::move(opened.request.model), opened.request.settings, run);
+    std::ranges::copy(opened.request.sources, std::back_inserter(opened.model.read_beside));
     if (options.run.quiet) return opened;
     for (const auto* warnings : {&opened.request.warnings, &opened.model.warnings})
         for (const std::string& warning : *warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
@@ -198,7 +199,7 @@ void put_carved(const CarveOptions& options, const CarvedModel& result, const st
         std::vector<std::string> inputs = files_read(options.pattern, pictures);
         inputs.insert(inputs.begin(), result.model.read_beside.begin(), result.model.read_beside.end());
         if (options.model.path != kStream) inputs.insert(inputs.begin(), options.model.path);
-        if (!options.slice.empty()) inputs.push_back(options.slice);
+        if (!options.slice.empty()) std::ranges::copy(profile_files(options.slice), std::back_inserter(inputs));
         put(options.dependencies, make_rule(options.output, inputs), interrupt);
     }
     // The result last: whoever sees it sees everything else too.
@@ -312,6 +313,9 @@ void add_carve(CLI::App& program, Action& chosen) {
     const char* files = "Files";
     command->add_option("--input-format", options->model.format, "Format of the model when the name does not tell")
         ->type_name("FORMAT")
+        ->group(files);
+    command->add_option("--input-name", options->model.name, "What standard input is called in the result")
+        ->type_name("NAME")
         ->group(files);
     command->add_option("--input-unit", options->model.unit, "Unit of a model whose file names none (millimeter)")
         ->type_name("UNIT")

@@ -100,7 +100,7 @@ void open_mesh(const Settings& settings, CarveModel& model, const RunControl& ru
     const ModelBytes& file = model.file;
     MeshFile read = read_model(file, meshing_for(settings), run);
     CarveTarget& target = model.targets.emplace_back();
-    target.name = std::filesystem::path(file.name).stem().string();
+    target.name = title_of(file);
     target.mesh = std::move(read.mesh);
     target.named_triangles = named_triangles_of(read);
     target.triangle_colors = std::move(read.triangle_colors);

@@ -16,8 +16,9 @@ bool from_threemf(const CarvedModel& result) {
     return result.model.targets.front().key.has_value();
 }
 
-std::string stem_of(const CarveModel& model) {
-    return std::filesystem::path(model.file.name).stem().string();
+/// Without its folder, which is nobody's business and differs from place to place.
+std::string file_name_of(const CarveModel& model) {
+    return std::filesystem::path(model.file.name).filename().string();
 }
 
 /// The result as the build shows it.
@@ -51,7 +52,10 @@ std::string thumbnail(const CarvedModel& result, const RunControl& run) {
 
 std::vector<RunReport> reports_of(const CarvedModel& result) {
     std::vector<RunReport> reports;
-    for (const CarvedTarget& carved : result.carved) reports.push_back(carved.report);
+    for (const CarvedTarget& carved : result.carved) {
+        reports.push_back(carved.report);
+        reports.back().input.model = file_name_of(result.model);
+    }
     return reports;
 }
 
@@ -59,7 +63,7 @@ RunSource source_of(const CarvedModel& result) {
     const ModelBytes& file = result.model.file;
     RunSource source;
     source.version = version();
-    source.model = run_file(file.name, file.bytes, result.settings.output.source);
+    source.model = run_file(file_name_of(result.model), file.bytes, result.settings.output.source);
     source.model_format = mesh_format_name(file.format);
     source.model_unit = length_unit_name(file.unit);
     for (const RunFile& materials : result.model.materials)
@@ -102,7 +106,7 @@ std::string carved_threemf(const CarvedModel& result, const RunControl& run) {
     CarvedPackage package;
     static_cast<PackageRecord&>(package) = std::move(record);
     package.objects.push_back(object_of(result, 0));
-    package.title = stem_of(result.model);
+    package.title = title_of(result.model.file);
     package.application = "Fretwork " + version();
     return write_carved_threemf(package, run.slice(0.4, 1.0));
 }
@@ -112,7 +116,7 @@ std::string carved_threemf(const CarvedModel& result, const RunControl& run) {
 MeshBytes carved_bytes(const CarvedModel& result, const std::string& path, MeshFormat format, const RunControl& run) {
     if (format == MeshFormat::kThreemf) return {carved_threemf(result, run), {}, {}};
     const MeshFile whole = shown(result, run);
-    const std::string name = stem_of(result.model);
+    const std::string name = title_of(result.model.file);
     return mesh_bytes(path, {whole.mesh, whole.triangle_colors, name}, format);
 }
 

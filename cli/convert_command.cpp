@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
 #include "cli/command.h"
@@ -22,12 +21,12 @@ int convert_command(const ConvertOptions& options, Interrupt& interrupt) {
     const MeshFormat format = output_format(options.output, options.export_format);
     check_target(options.output, {options.model.path});
     const RunControl run = control_of(options.run, interrupt);
-    MeshFile file = read_model(options.model, run.slice(0.0, 0.6));
+    const ModelBytes model = read_bytes(options.model);
+    MeshFile file = read_model(model, options.model.cad, run.slice(0.0, 0.6));
     if (!options.run.quiet)
         for (const std::string& warning : file.warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
     for (Vec3& p : file.mesh.positions_mm) p *= options.scale;
-    const std::string name = std::filesystem::path(options.model.path).stem().string();
-    const MeshBytes result = mesh_bytes(options.output, {file.mesh, file.triangle_colors, name}, format);
+    const MeshBytes result = mesh_bytes(options.output, {file.mesh, file.triangle_colors, title_of(model)}, format);
     if (!result.materials_path.empty()) put(result.materials_path, result.materials, interrupt);
     put(options.output, result.bytes, interrupt);
     run.checkpoint("write", 1.0);
@@ -47,6 +46,8 @@ void add_convert(CLI::App& program, Action& chosen) {
         ->type_name("OUT");
     command->add_option("--input-format", options->model.format, "Format of IN when the name does not tell")
         ->type_name("FORMAT");
+    command->add_option("--input-name", options->model.name, "What standard input is called in the result")
+        ->type_name("NAME");
     command->add_option("--input-unit", options->model.unit, "Unit of a model whose file names none (millimeter)")
         ->type_name("UNIT");
     command->add_option("--export-format", options->export_format, "Format of OUT when the name does not tell")

@@ -88,11 +88,16 @@ ModelBytes read_bytes(const ModelSource& source, const RunControl& run) {
     model.unit = unit_named(source.unit);
     const bool stream = source.path == kStream;
     if (stream && source.format.empty()) throw InvalidSetting("reading from standard input needs --input-format");
+    if (!stream && !source.name.empty()) throw InvalidSetting("--input-name goes with - for standard input");
     model.format = source.format.empty() ? mesh_format_from_path(source.path) : mesh_format_from_name(source.format);
-    model.name = stream ? kStreamName : source.path;
+    model.name = !stream ? source.path : source.name.empty() ? kStreamName : source.name;
     model.bytes = stream ? read_stdin() : read_file(fs::path(source.path));
     if (!stream) model.folder = fs::path(source.path).parent_path();
     return model;
+}
+
+std::string title_of(const ModelBytes& model) {
+    return fs::path(model.name).stem().string();
 }
 
 MeshFile read_model(const ModelSource& source, const RunControl& run) {

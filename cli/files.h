@@ -22,13 +22,14 @@ struct ModelSource {
     std::string format;               ///< empty: from the extension
     std::string unit = "millimeter";  ///< of files that name none
     CadMeshing cad = {};              ///< of STEP, IGES and BREP
+    std::string name = {};            ///< of what comes from standard input; empty: "standard input"
 };
 
 /// A model as it lies in its file.
 struct ModelBytes {
     std::string bytes;
     MeshFormat format = MeshFormat::kStl;
-    std::string name;  ///< the path, or "standard input"
+    std::string name;  ///< the path, or what standard input is called
     LengthUnit unit = LengthUnit::kMillimeter;
     std::optional<std::filesystem::path> folder = {};  ///< that the file lies in; none for a stream
     std::vector<std::string> read_beside = {};         ///< other files that the bytes were made from
@@ -39,6 +40,10 @@ struct ModelBytes {
 /// An OpenSCAD file is rendered: its bytes are those of the mesh.
 /// \throws InvalidSetting  a format or unit that is not known; `-` without a format. \throws InvalidInput, FileError
 ModelBytes read_bytes(const ModelSource& source, const RunControl& run = {});
+
+/// What a result that holds the model calls it: the name of its file without folder, so that the same file gives the
+/// same bytes wherever it lies, and without extension.
+std::string title_of(const ModelBytes& model);
 
 MeshFile read_model(const ModelSource& source, const RunControl& run = {});
 MeshFile read_model(const ModelBytes& model, const CadMeshing& cad, const RunControl& run = {});

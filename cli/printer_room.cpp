@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 
+#include "formats/cura_definition.h"
 #include "formats/read_file.h"
 
 namespace fretwork::cli {
@@ -41,7 +42,16 @@ std::optional<double> number_of(const std::string& text) {
     return stream >> value && value > 0.0 ? std::optional(value) : std::nullopt;
 }
 
+Printer printer_of_cura(const std::string& definition) {
+    const CuraPrinter cura = read_cura_definition(definition);
+    Printer printer;
+    if (cura.room_mm) printer.room_mm = (*cura.room_mm)[1] - (*cura.room_mm)[0];
+    printer.nozzle_mm = cura.nozzle_mm;
+    return printer;
+}
+
 Printer printer_of(const std::string& profile) {
+    if (profile.ends_with(".def.json")) return printer_of_cura(profile);
     Printer printer;
     std::istringstream lines(read_file(std::filesystem::path(profile)));
     for (std::string line; std::getline(lines, line);) {
@@ -78,7 +88,6 @@ std::string size_text(const Vec3& mm) {
 std::vector<std::string> printer_warnings(const std::string& profile, const Vec3& size_mm,
                                           const FabricationOptions& fabrication) {
     std::vector<std::string> warnings;
-    if (!profile.ends_with(".ini")) return warnings;
     const Printer printer = printer_of(profile);
     if (const double scale = fitting_scale(printer.room_mm, size_mm); scale < 1.0)
         warnings.push_back(fmt::format("the model is {} and the printer of {} reaches {}; --size-mm {:.4g} fits",

@@ -10,6 +10,7 @@
 #include "cli/files.h"
 #include "cli/scratch_folder.h"
 #include "core/base/error.h"
+#include "formats/cura_definition.h"
 #include "formats/gcode_reader.h"
 #include "formats/mesh_file.h"
 #include "formats/read_file.h"
@@ -82,8 +83,9 @@ std::vector<std::string> warnings_in(const std::string& text) {
     return warnings;
 }
 
-/// CuraEngine's totals stand in what it says; those in its G-code are placeholders.
-void add_cura_totals(const std::string& text, SlicedPrint& print) {
+/// CuraEngine's totals stand in what it says; those in its G-code are placeholders. The printer's size stands in
+/// neither.
+void add_cura_facts(const std::string& text, const std::string& definition, SlicedPrint& print) {
     const auto after = [&](const std::string& mark) -> std::optional<double> {
         const auto at = text.rfind(mark);
         if (at == text.npos) return std::nullopt;
@@ -91,6 +93,8 @@ void add_cura_totals(const std::string& text, SlicedPrint& print) {
     };
     print.seconds = after("Print time (s): ");
     if (const auto mm3 = after("Filament (mm^3): ")) print.material_ml = *mm3 / 1000.0;
+    if (const auto meters = after(";Filament used: ")) print.filament_mm = *meters * 1000.0;
+    print.room_mm = read_cura_definition(definition).room_mm;
 }
 
 void judge_bed(const SlicedPrint& print, std::vector<std::string>& faults) {
@@ -169,6 +173,13 @@ std::string sliced_path(const std::string& model, const std::string& profile) {
     return fs::path(model).replace_extension(ending_of(slicer_of(profile))).string();
 }
 
+std::vector<std::string> profile_files(const std::string& profile) {
+    if (slicer_of(profile) != Slicer::kCura) return {profile};
+    std::vector<std::string> files;
+    for (const fs::path& file : read_cura_definition(profile).files) files.push_back(file.string());
+    return files;
+}
+
 Slicing slice(const std::string& model, const std::string& profile, const RunControl& run) {
     const Slicer slicer = slicer_of(profile);
     const bool resin = slicer == Slicer::kPrusaResin;
@@ -179,7 +190,7 @@ Slicing slice(const std::string& model, const std::string& profile, const RunCon
     result.bytes = read_file(out);
     const std::string source = fs::path(model).replace_extension(ending_of(slicer)).string();
     SlicedPrint print = resin ? read_sla_archive(result.bytes, source) : read_gcode(result.bytes, source);
-    if (slicer == Slicer::kCura) add_cura_totals(said, print);
+    if (slicer == Slicer::kCura) add_cura_facts(said, profile, print);
     result.record = record_of(print);
     result.record.slicer = program_of(slicer);
     result.record.profile = profile;

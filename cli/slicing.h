@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/base/run_control.h"
 #include "core/pipeline/run_report.h"
@@ -17,6 +18,10 @@ struct Slicing {
 /// \param profile  an .ini of PrusaSlicer, or a .def.json of CuraEngine
 /// \throws FileError       the profile cannot be read. \throws InvalidSetting  neither of these.
 std::string sliced_path(const std::string& model, const std::string& profile);
+
+/// The profile, and of a definition those that it builds on.
+/// \throws FileError  it cannot be read. \throws InvalidInput  see read_cura_definition
+std::vector<std::string> profile_files(const std::string& profile);
 
 /// Slices with PrusaSlicer (filament or resin, as the profile says) or CuraEngine and reads what comes out.
 /// \param model  a file on disk that the slicer can read

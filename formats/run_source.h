@@ -11,7 +11,7 @@ namespace fretwork {
 
 /// A file that a run has read.
 struct RunFile {
-    std::string path;    ///< as the caller named it
+    std::string path;    ///< as the caller named it; of a model the name of its file
     std::string sha256;  ///< of its bytes; 64 hexadecimal digits
     std::string bytes;   ///< empty when the package only names it
 };

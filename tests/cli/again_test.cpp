@@ -78,12 +78,14 @@ TEST_CASE("cli: --again makes the same bytes from the package alone", "[cli][aga
         if (kept)
             for (const char* name : {"vase.obj", "vase.mtl"}) std::filesystem::remove(folder / name);
         else
-            line.insert(line.end(), {"--source", folder / "vase.obj"});
+            line.insert(line.end(), {"--source", folder / "vase.obj", "-d", folder / "again.d"});
         const ProgramResult again = run_program(line);
         CAPTURE(again.err);
         REQUIRE(again.exit_code == 0);
         CHECK((slurp(out) == slurp(folder / "again.3mf")));
         if (kept) return;
+        for (const char* name : {"out.3mf", "vase.obj", "vase.mtl"})
+            CHECK(slurp(folder / "again.d").find(folder / name) != std::string::npos);
         spit(folder / "vase.mtl", "newmtl clay\nKd 0.8 0.4 0.3\n");
         const ProgramResult other = run_program(line);
         CHECK(other.exit_code == 2);

@@ -68,36 +68,70 @@ TEST_CASE("cli: help and version go to stdout and exit with 0", "[cli]") {
 TEST_CASE("cli: carve writes every format, streams equal files, runs repeat", "[cli][determinism]") {
     const TemporaryFolder folder;
     spit(folder / "vase.off", vase_off());
-    for (const char* extension : {"3mf", "stl", "obj", "ply", "off", "amf"}) {
+    std::filesystem::create_directory(folder / "elsewhere");
+    spit(folder / "elsewhere/vase.off", vase_off());
+    for (const std::string extension : {"3mf", "stl", "obj", "ply", "off", "amf", "glb"}) {
         CAPTURE(extension);
-        const std::string target = folder / (std::string("out.") + extension);
-        const ProgramResult file =
-            run_program(carve_line({folder / "vase.off", "--pattern", "cells", "-o", target, "--threads", "1"}));
-        CAPTURE(file.err);
-        REQUIRE(file.exit_code == 0);
-        CHECK(file.out.empty());
+        // A stream of OBJ goes without the file of its colours.
+        const std::vector<std::string> pattern = {
+            "--pattern", "cells", "-D", std::string("output.colour=") + (extension == "obj" ? "none" : "exemplar")};
+        const auto carve = [&](std::vector<std::string> more, const std::string& input = {}) {
+            more.insert(more.end(), pattern.begin(), pattern.end());
+            const ProgramResult run = run_program(carve_line(more), input);
+            CAPTURE(run.err);
+            REQUIRE(run.exit_code == 0);
+            return run;
+        };
+        const std::string target = folder / ("out." + extension);
+        CHECK(carve({folder / "vase.off", "-o", target, "--threads", "1"}).out.empty());
         const std::string bytes = slurp(target);
-        const MeshFile carved = read_mesh(std::filesystem::path(target));
-        CHECK(report_mesh(carved.mesh, CountSelfIntersections::kYes).self_intersections == 0);
-        CHECK(report_mesh(carved.mesh).closed_manifold());
-        // OBJ and AMF hold the model's name, and PLY is as STL.
-        if (extension == std::string("obj") || extension == std::string("ply") || extension == std::string("amf"))
-            continue;
-        // The same bytes through the streams; 3MF holds the model's name, so that only the mesh is the same.
-        const ProgramResult stream = run_program(carve_line({"-", "--input-format", "off", "--pattern", "cells", "-o",
-                                                             "-", "--export-format", extension, "-q"}),
-                                                 vase_off());
-        REQUIRE(stream.exit_code == 0);
+        if (extension != "glb") {
+            const MeshReport report =
+                report_mesh(read_mesh(std::filesystem::path(target)).mesh, CountSelfIntersections::kYes);
+            CHECK(report.self_intersections == 0);
+            CHECK(report.closed_manifold());
+        }
+        // The same bytes through the streams, and from the same file in another folder.
+        const ProgramResult stream = carve(
+            {"-", "--input-format", "off", "--input-name", "vase.off", "-o", "-", "--export-format", extension, "-q"},
+            vase_off());
         CHECK(stream.err.empty());
-        if (std::string(extension) != "3mf")
-            CHECK((stream.out == bytes));
-        else {
-            const ProgramResult again = run_program(
-                carve_line({folder / "vase.off", "--pattern", "cells", "-o", folder / "b.3mf", "--threads", "2"}));
-            REQUIRE(again.exit_code == 0);
-            CHECK((slurp(folder / "b.3mf") == bytes));
+        CHECK((stream.out == bytes));
+        const ProgramResult again =
+            carve({folder / "elsewhere/vase.off", "-o", "-", "--export-format", extension, "--threads", "2"});
+        CHECK((again.out == bytes));
+    }
+}
+
+TEST_CASE("cli: convert reads and writes every format, through files and streams alike", "[cli][determinism]") {
+    const TemporaryFolder folder;
+    TriangleMesh torus = testing::make_torus(20, 6, 12, 8);
+    for (Vec3& p : torus.positions_mm) p = p.cast<float>().cast<double>();
+    spit(folder / "torus.off", write_mesh({torus, {}, "torus"}, MeshFormat::kOff));
+    for (const std::string from : {"3mf", "stl", "obj", "ply", "off", "amf"}) {
+        const std::string source = folder / ("torus." + from);
+        if (from != "off") REQUIRE(run_program({"convert", folder / "torus.off", source}).exit_code == 0);
+        for (const std::string to : {"3mf", "stl", "obj", "ply", "off", "amf", "glb"}) {
+            CAPTURE(from, to);
+            const std::string target = folder / ("out." + to);
+            REQUIRE(run_program({"convert", source, target}).exit_code == 0);
+            const ProgramResult stream = run_program(
+                {"convert", "-", "-", "--input-format", from, "--input-name", "torus." + from, "--export-format", to},
+                slurp(source));
+            CHECK(stream.err.empty());
+            CHECK((stream.out == slurp(target)));
+            if (to == "glb") continue;
+            const MeshReport report = report_mesh(read_mesh(std::filesystem::path(target)).mesh);
+            CHECK(report.triangles == torus.triangles.size());
+            CHECK(report.volume_mm3 == Approx(testing::volume_mm3(torus)).epsilon(1e-5));
         }
     }
+    CHECK(run_program({"convert", folder / "torus.off", "-", "--export-format", "stl", "--input-name", "x.off"})
+              .exit_code == 1);
+    // Without a name it is what messages call it.
+    const ProgramResult unnamed = run_program({"convert", "-", "-", "--input-format", "off", "--export-format", "obj"},
+                                              slurp(folder / "torus.off"));
+    CHECK_THAT(unnamed.out, Catch::Contains("\no standard_input\n"));
 }
 
 TEST_CASE("cli: carve writes summary, preview and dependencies", "[cli]") {

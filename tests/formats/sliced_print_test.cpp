@@ -1,7 +1,12 @@
 // What slicers hand back: G-code, and pictures for resin printers.
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <filesystem>
 
 #include "core/base/error.h"
+#include "formats/atomic_write.h"
+#include "formats/cura_definition.h"
 #include "formats/gcode_reader.h"
 #include "formats/png_writer.h"
 #include "formats/sla_reader.h"
@@ -10,6 +15,8 @@
 
 namespace fretwork {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Rectangles from the bed up, one list per layer, as PrusaSlicer writes them.
 std::string gcode_of(const std::vector<std::vector<std::pair<Vec2, Vec2>>>& layers, double height,
@@ -133,6 +140,44 @@ TEST_CASE("resin: dark pictures between others are gaps", "[formats]") {
     CHECK(print.material_ml == 1.25);
     CHECK_THROWS_AS(read_sla_archive(archive_of({}), "a.sl1"), InvalidInput);
     CHECK_THROWS_AS(read_sla_archive("no archive", "a.sl1"), InvalidInput);
+}
+
+TEST_CASE("cura definition: the printer's room and nozzle, of itself and what it builds on", "[formats][cura]") {
+    const fs::path folder = fs::temp_directory_path() / ("fretwork_cura_" + std::to_string(::getpid()));
+    fs::create_directory(folder);
+    const auto definition = [&](const std::string& name, const std::string& text) {
+        atomic_write(folder / (name + ".def.json"), text);
+        return folder / (name + ".def.json");
+    };
+    definition("base", R"({"settings": {"m": {"children": {"machine_width": {"default_value": 100, "value": "7"},
+        "machine_depth": {"default_value": 90, "children": {"machine_height": {"default_value": 80}}}}}}})");
+    const fs::path child =
+        definition("child", R"({"inherits": "base", "overrides": {"machine_width": {"default_value": 120.5},
+        "machine_center_is_zero": {"default_value": true}, "machine_nozzle_size": {"default_value": 0.6}}})");
+    const CuraPrinter printer = read_cura_definition(child);
+    REQUIRE(printer.room_mm);
+    CHECK((*printer.room_mm)[0].isApprox(Vec3(-60.25, -45, 0)));
+    CHECK((*printer.room_mm)[1].isApprox(Vec3(60.25, 45, 80)));
+    CHECK(printer.nozzle_mm == 0.6);
+    CHECK(printer.files == std::vector<fs::path>{child, folder / "base.def.json"});
+
+    // What is not beside it the engine may find elsewhere; a name does not lead out of the folder.
+    for (const char* parent : {"fdmprinter", "../base", "..", ""}) {
+        CAPTURE(parent);
+        const CuraPrinter alone = read_cura_definition(definition(
+            "alone",
+            std::string(R"({"inherits": ")") + parent + R"(", "settings": {"machine_width": {"default_value": -5}}})"));
+        CHECK(alone.files.size() == (std::string(parent) == "../base" ? 2 : 1));
+        CHECK_FALSE(alone.room_mm);  // no printer is -5 mm wide
+    }
+    const fs::path endless = definition("endless", R"({"inherits": "endless"})");
+    CHECK_THROWS_WITH(read_cura_definition(endless), Catch::Contains("over 16 definitions"));
+    CHECK_THROWS_WITH(read_cura_definition(definition("cut", "{\"a\": ")), Catch::Contains("cut.def.json: byte "));
+    CHECK_THROWS_WITH(read_cura_definition(definition("list", "[1]")), Catch::Contains("found array"));
+    CHECK_THROWS_WITH(read_cura_definition(definition("deep", std::string(70, '[') + std::string(70, ']'))),
+                      Catch::Contains("64 deep"));
+    CHECK_THROWS_AS(read_cura_definition(folder / "none.def.json"), FileError);
+    fs::remove_all(folder);
 }
 
 }  // namespace
