@@ -37,8 +37,11 @@ struct CarveOptions {
     std::string summary, report, preview, dependencies;
     bool check = false;
     bool strict = false;
+    bool verify_and_reinforce = false;
     std::string slice;  ///< profile
 };
+
+constexpr int kVerifyRounds = 8;
 
 /// The flags of this command that stand for keys of a spec.
 PatternOptions with_own_flags(const CarveOptions& options) {
@@ -51,6 +54,7 @@ PatternOptions with_own_flags(const CarveOptions& options) {
     if (options.no_thumbnail) set("output.thumbnail", "false");
     if (options.no_source) set("output.source", "false");
     if (!options.paint.empty()) set("output.paint", options.paint);
+    if (options.verify_and_reinforce) set("structure.verify_rounds", std::to_string(kVerifyRounds));
     if (options.extruders) set("output.extruders", std::to_string(*options.extruders));
     return pattern;
 }
@@ -148,16 +152,20 @@ void print_checked(const std::string& prefix, const RunReport& report) {
 void print_done(const std::string& output, const std::string& prefix, const RunReport& report) {
     // Parts of the model that touch come out as one.
     const std::size_t pieces = std::min(report.pattern.components_after, report.mesh.report.components);
-    fmt::print(stderr, "fretwork: {}: {}{} triangles, {} {}, {:.0f} % solid, stress {}, {:.1f} s\n",
+    const std::string verdict = report.strength
+                                    ? fmt::format("factor of safety {:.3g}", report.strength->check.report.least_factor)
+                                    : "stress " + report.structure.verdict;
+    fmt::print(stderr, "fretwork: {}: {}{} triangles, {} {}, {:.0f} % solid, {}, {:.1f} s\n",
                output == kStream ? "standard output" : output, prefix, report.mesh.report.triangles, pieces,
-               pieces == 1 ? "piece" : "pieces", 100.0 * report.pattern.solid_fraction, report.structure.verdict,
-               report.seconds_total);
+               pieces == 1 ? "piece" : "pieces", 100.0 * report.pattern.solid_fraction, verdict, report.seconds_total);
 }
 
 bool below_standard(const RunReport& report) {
     const MeshReport& mesh = report.mesh.report;
-    return report.structure.max_pa > report.structure.allowable_pa || !mesh.closed_manifold() ||
-           mesh.self_intersections > 0 || report.pattern.components_after != report.shell.components ||
+    const bool too_weak =
+        report.strength ? !report.strength->faults.empty() : report.structure.max_pa > report.structure.allowable_pa;
+    return too_weak || !mesh.closed_manifold() || mesh.self_intersections > 0 ||
+           report.pattern.components_after != report.shell.components ||
            (report.print && !report.print->faults.empty()) || (report.slicing && !report.slicing->faults.empty());
 }
 
@@ -365,6 +373,10 @@ void add_carve(CLI::App& program, Action& chosen) {
         ->group(files);
     add_run_flags(*command, options->run);
     command->add_flag("--check", options->check, "Say within seconds what would not work; carve nothing")->group("Run");
+    command->add_flag("--verify-and-reinforce", options->verify_and_reinforce,
+                      fmt::format("Analyse the result in full, strengthen it where weak, and so on until it holds "
+                                  "(structure.verify_rounds = {})",
+                                  kVerifyRounds));
     command->add_flag("--strict", options->strict, "Exit with 4 where strength or printability falls short")
         ->group("Run");
     command->footer(

@@ -74,17 +74,16 @@ double unasked_voxel_mm(const MeshReport& report) {
 
 StrengthCheckSettings check_settings(const Settings& settings, const StrengthOptions& options,
                                      const RunLimits& limits) {
-    StrengthCheckSettings result;
-    StructureOptions structure = settings.structure;
+    StrengthCheckSettings result = strength_check_settings(settings, limits.max_memory_bytes);
     if (!options.material.empty()) {
-        structure = {};
-        structure.material = options.material;
+        StructureOptions named;
+        named.material = options.material;
+        result.analysis.material = material_of(named);
     }
-    result.analysis.material = material_of(structure);
-    result.analysis.safety_factor = settings.structure.steps.safety_factor;
-    if (limits.max_memory_bytes > 0) result.analysis.max_memory_bytes = limits.max_memory_bytes;
-    if (!options.resolution) result.voxel_mm = settings.shell.voxel_mm;
-    result.resolution = options.resolution.value_or(settings.shell.resolution.value_or(kDefaultResolution));
+    if (options.resolution) {
+        result.voxel_mm.reset();
+        result.resolution = *options.resolution;
+    }
     return result;
 }
 
@@ -130,7 +129,9 @@ StrengthVerdict verify_strength(const ModelBytes& model, const TriangleMesh& mes
         loads = loads_of_carved(mesh, settings, checked.resolution, run.slice(0.05, 0.1));
     const TriangleMesh& judged = by_source ? *object : mesh;
     try {
-        verdict.check = check_strength(judged, loads, settings.structure.fixed_share, checked, run.slice(0.1, 1.0));
+        const RunControl rest = run.slice(0.1, 1.0);
+        verdict.check = loads ? check_strength(judged, *loads, checked, rest)
+                              : check_own_weight(judged, settings.structure.fixed_share, checked, rest);
     } catch (const InvalidInput& error) {
         verdict.cautions.push_back(fmt::format("whether it holds is not known: {}", error.what()));
         return verdict;

@@ -5,6 +5,7 @@
 
 #include "formats/color_channel.h"
 #include "formats/printability_facts.h"
+#include "formats/strength_facts.h"
 
 namespace fretwork {
 namespace {
@@ -97,6 +98,19 @@ Json structure_json(const StructureRecord& s) {
             {"stopped_by", s.stopped_by}};
 }
 
+Json strength_json(const StrengthRecord& s) {
+    Facts facts;
+    add_strength_facts(s.check, s.faults, "", facts);
+    Json json = Json::parse(facts_json(facts));
+    json["rounds"] = Json::array();
+    for (const StrengthRound& round : s.rounds)
+        json["rounds"].push_back({{"factor_of_safety", number(round.least_factor)},
+                                  {"weak_voxels", round.weak_voxels},
+                                  {"voxels_added", round.voxels_added}});
+    json["stopped_by"] = s.stopped_by;
+    return json;
+}
+
 Json printability_json(const RunReport& r) {
     const MeshReport& mesh = r.mesh.report;
     Json json = {
@@ -168,6 +182,7 @@ Json whole_json(const RunReport& r, ReportTimes times) {
     json["iterations"] = Json::array();
     for (const ReinforceRecord& record : r.iterations) json["iterations"].push_back(iteration_json(record));
     json["structure"] = structure_json(r.structure);
+    if (r.strength) json["strength"] = strength_json(*r.strength);
     json["mesh"] = mesh_json(r.mesh.report);
     json["mesh"]["min_feature_mm"] = number(r.mesh.min_feature_mm);
     json["printability"] = printability_json(r);

@@ -20,6 +20,7 @@
 #include "core/pipeline/settings_schema.h"
 #include "core/pipeline/shell_stress.h"
 #include "core/pipeline/stage_plan.h"
+#include "core/pipeline/strength_rounds.h"
 #include "core/pipeline/structure_loop.h"
 #include "core/printability/print_faults.h"
 #include "core/pyramid/voxel_pyramid.h"
@@ -63,6 +64,11 @@ RunReport report_of_request(const CarveInput& input, const Settings& settings) {
     return report;
 }
 
+/// A draft is for the eye and does without what takes long to find out.
+bool is_draft(const Settings& settings) {
+    return settings.synthesis.preset == Preset::kDraft;
+}
+
 void note_resolved(const Settings& settings, const ResolvedSettings& resolved, RunReport& report) {
     report.settings = resolved_document(settings, resolved);
     report.shell.resolution =
@@ -74,6 +80,8 @@ void note_resolved(const Settings& settings, const ResolvedSettings& resolved, R
     report.mesh.min_feature_mm = resolved.enlarge.min_feature_mm;
     report.mesh.min_hole_mm = resolved.enlarge.min_hole_mm;
     std::ranges::copy(resolved.warnings, std::back_inserter(report.warnings));
+    if (is_draft(settings) && settings.structure.verify_rounds > 0)
+        report.warnings.push_back("structure.verify_rounds: a draft is not analysed in full");
 }
 
 StructureRecord structure_record(const ReinforceRecord& last) {
@@ -91,10 +99,20 @@ void note_structure(const StructureLoopResult& loop, RunReport& report) {
     report.iterations = loop.records;
     report.structure = structure_record(loop.records.back());
     report.pattern.components_before = loop.components_before;
-    report.pattern.reinforced_voxels = static_cast<std::size_t>(std::ranges::count(loop.forced, std::uint8_t{1}));
+}
+
+void warn_of_stress(RunReport& report) {
     if (report.structure.max_pa > report.structure.allowable_pa)
         report.warnings.push_back(fmt::format("stress of {:.3g} MPa is {}; a thicker wall or a larger budget helps",
                                               report.structure.max_pa * 1e-6, report.structure.verdict));
+}
+
+void note_strength(const StrengthRecord& strength, RunReport& report) {
+    report.strength = strength;
+    const char* way_out = strength.stopped_by == "nothing to fill" || strength.stopped_by == "no gain"
+                              ? "; what lies around is solid or no help: a thicker wall is"
+                              : "; more rounds or a larger structure.material_budget may help";
+    for (const std::string& fault : strength.faults) report.warnings.push_back(fault + way_out);
 }
 
 void note_pattern(const SurfaceVoxels& shell, const EnlargeResult& enlarged, RunReport& report) {
@@ -125,14 +143,14 @@ void note_output(const CarvedMesh& carved, const MeshReport& mesh, RunReport& re
                         report.shell.components));
 }
 
-/// A draft is for the eye and does without what takes long to find out.
-bool is_draft(const Settings& settings) {
-    return settings.synthesis.preset == Preset::kDraft;
+bool analyses_strength(const Settings& settings) {
+    return settings.structure.verify_rounds > 0 && !is_draft(settings);
 }
 
 std::vector<PlannedStage> planned_stages(const Settings& settings) {
     std::vector<PlannedStage> stages = {{"repair", 0.3},    {"voxelize", 0.3}, {"pyramid", 0.3},  {"synthesize", 0.6},
                                         {"reinforce", 3.0}, {"enlarge", 2.0},  {"solidify", 7.5}, {"verify", 0.3}};
+    if (analyses_strength(settings)) stages.insert(stages.end() - 1, {"strength", 25.0});
     if (!is_draft(settings)) stages.push_back({"printability", 1.0});
     return stages;
 }
@@ -225,25 +243,52 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
         return structure_loop(shell, input.exemplar, synthesizer, profile, resolved, keep, r);
     });
     note_structure(loop, report);
+    if (!analyses_strength(settings)) warn_of_stress(report);
     result.stress_mpa = stress_on_voxels(shell, loop.solid, loop.last_scored).voxel_mpa;
-    result.labels = label_patches(shell, synthesizer.frames(), input.exemplar);
     if (result.trace) result.trace->stress = design_stress(shell, result.trace->first_solid, loop);
-    result.reinforced = std::move(loop.forced);
 
     GeodesicLinks links;
-    EnlargeResult enlarged = plan.run("enlarge", [&](const RunControl& r) {
+    MadeObject made{std::move(loop.forced), synthesizer.frames(), {}, {}};
+    made.enlarged = plan.run("enlarge", [&](const RunControl& r) {
         links = link_two_rings(shell, r);
         return enlarge_features(shell, links, loop.solid, keep, resolved.enlarge, r);
     });
-    note_pattern(shell, enlarged, report);
-    result.solid = std::move(enlarged.solid);
-    result.voxel_colors = voxel_colors(shell, read_color(input.exemplar, synthesizer.frames()), keep, kept);
-
-    result.carved = plan.run("solidify", [&](const RunControl& r) {
-        const PatternField pattern(result.surface, shell, links, result.solid, synthesizer.frames(), input.exemplar,
+    const auto solid_object = [&](const MadeObject& object, const RunControl& r) {
+        const PatternField pattern(result.surface, shell, links, object.enlarged.solid, object.frames, input.exemplar,
                                    keep_field, r.slice(0.0, 0.1), kept);
         return solidify(result.surface, shell, pattern, resolved.solidify, r.slice(0.1, 1.0));
-    });
+    };
+    made.carved = plan.run("solidify", [&](const RunControl& r) { return solid_object(made, r); });
+    if (analyses_strength(settings)) {
+        const auto make_anew = [&](std::vector<std::uint8_t> forced, const std::vector<VoxelIndex>& added,
+                                   const RunControl& r) {
+            synthesizer.resynthesize(forced, added, resolved.reinforce.pattern_radius_voxels, r.slice(0.0, 0.1));
+            MadeObject object{std::move(forced), synthesizer.frames(), {}, {}};
+            object.enlarged =
+                enlarge_features(shell, links, solid_with(input.exemplar, object.frames, keep, object.forced), keep,
+                                 resolved.enlarge, r.slice(0.1, 0.3));
+            object.carved = solid_object(object, r.slice(0.3, 1.0));
+            return object;
+        };
+        StrengthRounds rounds = plan.run("strength", [&](const RunControl& r) {
+            const StrengthCheckSettings check = strength_check_settings(settings, limits.max_memory_bytes);
+            const SurfaceLoads loads = loads_on_surface(result.surface, local, check.resolution, r.slice(0.0, 0.02));
+            return strengthen(std::move(made), shell, links, loads,
+                              {settings.structure.verify_rounds, resolved.reinforce.material_budget,
+                               2.0 * resolved.reinforce.pattern_radius_voxels, check},
+                              make_anew, r.slice(0.02, 1.0));
+        });
+        note_strength(rounds.record, report);
+        result.stress_mpa = std::move(rounds.on_shell.stress_mpa);
+        made = std::move(rounds.object);
+    }
+    note_pattern(shell, made.enlarged, report);
+    report.pattern.reinforced_voxels = static_cast<std::size_t>(std::ranges::count(made.forced, std::uint8_t{1}));
+    result.solid = std::move(made.enlarged.solid);
+    result.reinforced = std::move(made.forced);
+    result.voxel_colors = voxel_colors(shell, read_color(input.exemplar, made.frames), keep, kept);
+    result.labels = label_patches(shell, made.frames, input.exemplar);
+    result.carved = std::move(made.carved);
     const MeshReport carved = plan.run("verify", [&](const RunControl& r) {
         const MeshReport found = report_mesh(result.carved.mesh, CountSelfIntersections::kYes, r);
         r.checkpoint("verify", 1.0);

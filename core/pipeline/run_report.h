@@ -11,6 +11,7 @@
 #include "core/mesh/mesh_report.h"
 #include "core/pipeline/setting_value.h"
 #include "core/pipeline/settings.h"
+#include "core/pipeline/strength_check.h"
 #include "core/printability/printability.h"
 #include "core/reinforce/structural_optimizer.h"
 
@@ -59,6 +60,21 @@ struct StructureRecord {
     std::string stopped_by;  ///< why the loop ended
 };
 
+/// One full analysis, and what was done about what it found weak.
+struct StrengthRound {
+    double least_factor = 0.0;     ///< of safety
+    std::size_t weak_voxels = 0;   ///< of the surface, below the asked factor
+    std::size_t voxels_added = 0;  ///< made solid for the next round
+};
+
+/// Of the full analysis of the result, where it was asked for.
+struct StrengthRecord {
+    std::vector<StrengthRound> rounds;  ///< the first is of the object as the loop of Algorithm 1 left it
+    StrengthCheck check;                ///< of the result, without its values per voxel
+    std::vector<std::string> faults;    ///< see strength_faults.h
+    std::string stopped_by;             ///< "holds", "rounds", "budget", "nothing to fill", "no gain"
+};
+
 struct OutputMeshRecord {
     MeshReport report;
     double min_feature_mm = 0.0;  ///< width that every solid feature was brought to
@@ -105,6 +121,7 @@ struct RunReport {
     PatternRecord pattern;
     std::vector<ReinforceRecord> iterations;
     StructureRecord structure;
+    std::optional<StrengthRecord> strength;
     OutputMeshRecord mesh;
     std::optional<PrintRecord> print;
     PaintRecord paint;

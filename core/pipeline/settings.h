@@ -108,6 +108,7 @@ struct StructureOptions {
     double handling_force_n = 10.0;
     double fixed_share = 0.1;
     std::optional<double> pattern_radius_mm;
+    int verify_rounds = 0;  ///< full analyses after carving, each but the last followed by strengthening; 0: none
     /// Everything the optimizer takes as it is; thickness, radius and seed are derived.
     ReinforceSettings steps;
 };

@@ -334,6 +334,8 @@ void add_structure(std::vector<SettingInfo>& t) {
                     "Bridges between two solutions of the equations."));
     t.push_back(row("structure.max_iterations", FIELD(structure.steps.max_iterations), "1", between(1, 1000),
                     "Most turns of the loop of reinforcement and resynthesis."));
+    t.push_back(row("structure.verify_rounds", FIELD(structure.verify_rounds), "1", between(0, 50),
+                    "Rounds in which the result is analysed in full and strengthened where weak; 0 = none."));
 }
 
 void add_fabrication(std::vector<SettingInfo>& t) {

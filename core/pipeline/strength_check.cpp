@@ -15,31 +15,10 @@ namespace {
 // Loads are spread over the surface's voxels: more of them than this change nothing that is felt.
 constexpr int kMostSurfaceResolution = 256;
 
-SurfaceLoads loads_on(const TriangleMesh& surface, const Settings& settings, int resolution, const RunControl& run) {
-    SurfaceLoads loads;
-    const int cells = std::clamp(resolution, 4, kMostSurfaceResolution);
-    loads.shell = voxelize(surface, {.resolution = cells}, run.slice(0.5, 0.9));
-    loads.profile = intended_use(surface, loads.shell, settings, run.slice(0.9, 1.0));
-    return loads;
-}
-
-}  // namespace
-
-SurfaceLoads loads_of_source(const TriangleMesh& model, const std::vector<NamedTriangles>& named,
-                             const Settings& settings, int resolution, const RunControl& run) {
-    const PreparedSurface surface =
-        prepare_surface(model, settings.input, CountSelfIntersections::kNo, run.slice(0.0, 0.5));
-    const Settings local = regions_on(surface, {model.triangles.size(), named}, settings);
-    return loads_on(surface.mesh, local, resolution, run);
-}
-
-SurfaceLoads loads_of_carved(const TriangleMesh& carved, const Settings& settings, int resolution,
-                             const RunControl& run) {
-    return loads_on(carved, settings, resolution, run);
-}
-
-StrengthCheck check_strength(const TriangleMesh& carved, const std::optional<SurfaceLoads>& loads, double fixed_share,
-                             const StrengthCheckSettings& settings, const RunControl& run) {
+/// \param cases  the model's load cases
+template <class Cases>
+StrengthCheck check(const TriangleMesh& carved, const StrengthCheckSettings& settings, const RunControl& run,
+                    const Cases& cases) {
     constexpr double kCoarser = 1.25;  // halves the voxels
     constexpr double kLeastResolution = 32.0;
     const double longest_mm = longest_side(carved);
@@ -47,16 +26,61 @@ StrengthCheck check_strength(const TriangleMesh& carved, const std::optional<Sur
     check.asked_voxel_mm = settings.voxel_mm.value_or(longest_mm / settings.resolution);
     for (double voxel_mm = check.asked_voxel_mm;; voxel_mm *= kCoarser) {
         try {
-            const VoxelModel model = make_voxel_model(carved, voxel_mm, run.slice(0.0, 0.05));
-            const std::vector<VoxelCase> cases =
-                loads ? cases_of(loads->profile, loads->shell, model, run) : self_weight_cases(model, fixed_share);
-            check.report = analyze_strength(model, cases, settings.analysis, run.slice(0.1, 1.0));
+            VoxelModel model = make_voxel_model(carved, voxel_mm, run.slice(0.0, 0.05));
+            check.report = analyze_strength(model, cases(model), settings.analysis, run.slice(0.1, 1.0));
+            check.grid = model.grid;
+            check.voxels = std::move(model.voxels);
             return check;
         } catch (const MemoryLimit&) {
             check.coarser = true;
             if (longest_mm < kLeastResolution * kCoarser * voxel_mm) throw;
         }
     }
+}
+
+}  // namespace
+
+SurfaceLoads loads_on_surface(const TriangleMesh& surface, const Settings& settings, int resolution,
+                              const RunControl& run) {
+    SurfaceLoads loads;
+    const int cells = std::clamp(resolution, 4, kMostSurfaceResolution);
+    loads.shell = voxelize(surface, {.resolution = cells}, run.slice(0.0, 0.8));
+    loads.profile = intended_use(surface, loads.shell, settings, run.slice(0.8, 1.0));
+    return loads;
+}
+
+SurfaceLoads loads_of_source(const TriangleMesh& model, const std::vector<NamedTriangles>& named,
+                             const Settings& settings, int resolution, const RunControl& run) {
+    const PreparedSurface surface =
+        prepare_surface(model, settings.input, CountSelfIntersections::kNo, run.slice(0.0, 0.5));
+    const Settings local = regions_on(surface, {model.triangles.size(), named}, settings);
+    return loads_on_surface(surface.mesh, local, resolution, run.slice(0.5, 1.0));
+}
+
+SurfaceLoads loads_of_carved(const TriangleMesh& carved, const Settings& settings, int resolution,
+                             const RunControl& run) {
+    return loads_on_surface(carved, settings, resolution, run);
+}
+
+StrengthCheckSettings strength_check_settings(const Settings& settings, std::uint64_t max_memory_bytes) {
+    StrengthCheckSettings check;
+    check.analysis.material = material_of(settings.structure);
+    check.analysis.safety_factor = settings.structure.steps.safety_factor;
+    if (max_memory_bytes > 0) check.analysis.max_memory_bytes = max_memory_bytes;
+    check.voxel_mm = settings.shell.voxel_mm;
+    check.resolution = settings.shell.resolution.value_or(kDefaultResolution);
+    return check;
+}
+
+StrengthCheck check_strength(const TriangleMesh& carved, const SurfaceLoads& loads,
+                             const StrengthCheckSettings& settings, const RunControl& run) {
+    return check(carved, settings, run,
+                 [&](const VoxelModel& model) { return cases_of(loads.profile, loads.shell, model, run); });
+}
+
+StrengthCheck check_own_weight(const TriangleMesh& carved, double fixed_share, const StrengthCheckSettings& settings,
+                               const RunControl& run) {
+    return check(carved, settings, run, [&](const VoxelModel& model) { return self_weight_cases(model, fixed_share); });
 }
 
 }  // namespace fretwork

@@ -27,6 +27,10 @@ struct SurfaceLoads {
 SurfaceLoads loads_of_source(const TriangleMesh& model, const std::vector<NamedTriangles>& named,
                              const Settings& settings, int resolution, const RunControl& run = {});
 
+/// The same for a surface that is prepared already. \param settings  with regions as `regions_on` gives them
+SurfaceLoads loads_on_surface(const TriangleMesh& surface, const Settings& settings, int resolution,
+                              const RunControl& run = {});
+
 /// Where the model is not known: regions are looked for on the carved surface itself, inner and side walls included.
 /// \throws InvalidSetting  a region that meets no part of it; a name of a face or part
 SurfaceLoads loads_of_carved(const TriangleMesh& carved, const Settings& settings, int resolution,
@@ -38,16 +42,25 @@ struct StrengthCheckSettings {
     int resolution = kDefaultResolution;  ///< voxels along the longest side; range 4 to 4096
 };
 
+/// What the settings of a carve ask for: its material and safety, and voxels of its size.
+/// \param max_memory_bytes  0: as much as StrengthSettings takes by itself
+StrengthCheckSettings strength_check_settings(const Settings& settings, std::uint64_t max_memory_bytes);
+
 struct StrengthCheck {
     StrengthReport report;
+    VoxelGrid grid;                  ///< of the voxels
+    std::vector<VoxelCoord> voxels;  ///< that the report's values per voxel are of
     double asked_voxel_mm = 0.0;
     bool coarser = false;  ///< voxels are larger than was asked for, to keep to the memory
 };
 
 /// Voxels of the asked size, or larger ones where those would take more than the memory allows.
-/// \param loads  none: self-weight in three directions, held at the lowest `fixed_share` of each piece
 /// \throws  as make_voxel_model and analyze_strength; MemoryLimit where even 32 voxels are too many
-StrengthCheck check_strength(const TriangleMesh& carved, const std::optional<SurfaceLoads>& loads, double fixed_share,
+StrengthCheck check_strength(const TriangleMesh& carved, const SurfaceLoads& loads,
                              const StrengthCheckSettings& settings, const RunControl& run = {});
+
+/// The same under self-weight in three directions, held at the lowest `fixed_share` of each piece.
+StrengthCheck check_own_weight(const TriangleMesh& carved, double fixed_share, const StrengthCheckSettings& settings,
+                               const RunControl& run = {});
 
 }  // namespace fretwork

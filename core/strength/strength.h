@@ -68,6 +68,7 @@ struct StrengthReport {
     double safety_factor = 0.0;         ///< that was asked for
     std::vector<WeakPlace> weakest;     ///< at most kMostWeakPlaces, the weakest first, each apart from all before it
     std::vector<float> worst_stress_sum_pa;  ///< per voxel, over cases
+    std::vector<float> worst_factor;         ///< of safety, per voxel, over cases
 
     [[nodiscard]] bool holds() const { return least_factor >= safety_factor; }
 };

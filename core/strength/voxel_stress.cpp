@@ -113,8 +113,10 @@ std::vector<WeakPlace> VoxelJudge::weakest_places() const {
 
 void VoxelJudge::conclude(StrengthReport& report) const {
     report.worst_stress_sum_pa.resize(worst_.size());
+    report.worst_factor.resize(worst_.size());
     for (std::size_t v = 0; v < worst_.size(); ++v) {
         report.worst_stress_sum_pa[v] = worst_[v].stress_sum_pa;
+        report.worst_factor[v] = worst_[v].factor;
         report.least_factor = std::min(report.least_factor, double{worst_[v].factor});
     }
     report.stress_sum = statistics_of(report.worst_stress_sum_pa);

@@ -256,6 +256,36 @@ TEST_CASE("cli: --strict exits with 4 where the stress stays too high, and the r
     CHECK(carve_with("1", "firm.off").exit_code == 0);
 }
 
+TEST_CASE("cli: --verify-and-reinforce judges by the full analysis, and says what it cannot mend", "[cli]") {
+    const TemporaryFolder folder;
+    spit(folder / "vase.off", vase_off());
+    const auto carve_with = [&](const std::string& force_n, const std::string& name) {
+        return run_program({"carve", folder / "vase.off", "--pattern", "cells", "--resolution", "48", "-D",
+                            "structure.max_iterations=1", "-D", "structure.samples=60", "-D",
+                            "structure.handling_force_n=" + force_n, "--verify-and-reinforce", "--strict", "-o",
+                            folder / (name + ".3mf"), "--summary", folder / (name + ".json")});
+    };
+    const auto strength_in = [&](const char* name) { return Json::parse(slurp(folder / name))["strength"]; };
+    const ProgramResult weak = carve_with("3000", "weak");
+    CHECK(weak.exit_code == 4);
+    CHECK(weak.err.find("factor of safety") != std::string::npos);
+    const Json falls_short = strength_in("weak.json");
+    const bool filled = falls_short["stopped_by"] == "nothing to fill" || falls_short["stopped_by"] == "no gain";
+    CHECK(weak.err.find(filled ? "a thicker wall is" : "material_budget may help") != std::string::npos);
+    CHECK(falls_short["holds"] == false);
+    CHECK(falls_short["rounds"].size() > 1);
+    CHECK(falls_short["faults"].size() == 1);
+
+    const ProgramResult firm = carve_with("1", "firm");
+    CHECK(firm.err.find("allowable") == std::string::npos);
+    const Json holds = strength_in("firm.json");
+    CHECK(holds["stopped_by"] == "holds");
+    // What verify finds in the file is what the run has said.
+    const Json verified = Json::parse(run_program({"verify", folder / "firm.3mf", "--json"}).out);
+    CHECK(verified["strength"]["factor_of_safety"].get<double>() ==
+          Approx(holds["factor_of_safety"].get<double>()).epsilon(1e-3));
+}
+
 TEST_CASE("cli: info describes models, pictures and specs", "[cli]") {
     const TemporaryFolder folder;
     spit(folder / "vase.off", vase_off());

@@ -122,6 +122,16 @@ RunReport some_report() {
     print.longest_bridge = {Vec3(4, 5, 6), 7.5};
     print.least_solid = PrintPlace{Vec3(7, 8, 9), 0.25};
     report.print = PrintRecord{print, {"a strand is 0.25 mm wide"}};
+    StrengthRecord strength;
+    strength.rounds = {{0.75, 12, 34}, {1.5, 3, 0}};
+    strength.check.report.least_factor = 1.5;
+    strength.check.report.safety_factor = 2.0;
+    strength.check.report.cases.resize(1);
+    strength.check.report.cases[0].name = "push";
+    strength.check.report.weakest = {{Vec3(1, 2, 3), 1.5, 1e6, 2e6, 0}};
+    strength.faults = {"is too weak"};
+    strength.stopped_by = "no gain";
+    report.strength = strength;
     report.slicing = SliceRecord{"prusa-slicer", "fdm.ini", "out.gcode", 12, 2.4, 60.0, {}, 3.5, {}, true, 0, {}, {}};
     report.warnings = {"one \"quoted\" \xFF byte"};
     return report;
@@ -138,6 +148,10 @@ TEST_CASE("report: fits its published schema", "[formats][report]") {
     CHECK(report["seconds"]["initial_synthesis"] == 1.5);
     CHECK(report["seconds"]["total"] == 4.0);
     CHECK(report["iterations"].size() == 2);
+    CHECK(report["strength"]["factor_of_safety"] == 1.5);
+    CHECK(report["strength"]["rounds"][0] ==
+          Json({{"factor_of_safety", 0.75}, {"weak_voxels", 12}, {"voxels_added", 34}}));
+    CHECK(report["strength"]["weakest"][0]["case"] == "push");
     const Json& print = report["printability"];
     CHECK(print["island_layers"] == Json::array({{{"layer", 1}, {"islands", 2}}}));
     CHECK(print["longest_bridge_at_mm"] == Json({4.0, 5.0, 6.0}));

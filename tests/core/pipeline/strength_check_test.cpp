@@ -20,7 +20,7 @@ StrengthCheckSettings settings_at(int resolution) {
 TEST_CASE("strength check: keeps to the memory by larger voxels, and says so", "[strength]") {
     const TriangleMesh ring = make_torus(20.0, 4.0, 48, 24);
     StrengthCheckSettings settings = settings_at(96);
-    const StrengthCheck asked = check_strength(ring, std::nullopt, 0.1, settings);
+    const StrengthCheck asked = check_own_weight(ring, 0.1, settings);
     CHECK_FALSE(asked.coarser);
     CHECK(asked.report.voxel_mm == Approx(48.0 / 96).epsilon(1e-3));
     CHECK(asked.report.cases.size() == 3);
@@ -28,14 +28,14 @@ TEST_CASE("strength check: keeps to the memory by larger voxels, and says so", "
     const std::uint64_t needed =
         memory_for(make_voxel_model(ring, asked.report.voxel_mm), 3) + asked.report.factor_bytes;
     settings.analysis.max_memory_bytes = needed / 2;
-    const StrengthCheck coarser = check_strength(ring, std::nullopt, 0.1, settings);
+    const StrengthCheck coarser = check_own_weight(ring, 0.1, settings);
     CHECK(coarser.coarser);
     CHECK(coarser.asked_voxel_mm == asked.report.voxel_mm);
     CHECK(coarser.report.voxels < asked.report.voxels / 2);
     // Still the same ring.
     CHECK(coarser.report.volume_mm3 == Approx(asked.report.volume_mm3).epsilon(0.05));
     settings.analysis.max_memory_bytes = 1000;
-    CHECK_THROWS_AS(check_strength(ring, std::nullopt, 0.1, settings), MemoryLimit);
+    CHECK_THROWS_AS(check_own_weight(ring, 0.1, settings), MemoryLimit);
 }
 
 TEST_CASE("strength check: loads act alike through the model and through the carved surface", "[strength]") {
@@ -51,8 +51,8 @@ TEST_CASE("strength check: loads act alike through the model and through the car
     const SurfaceLoads by_carved = loads_of_carved(post, settings, 80);
     StrengthCheckSettings fine = settings_at(80);
     fine.analysis.keep_fields = true;
-    const StrengthReport a = check_strength(post, by_model, 0.1, fine).report;
-    const StrengthReport b = check_strength(post, by_carved, 0.1, fine).report;
+    const StrengthReport a = check_strength(post, by_model, fine).report;
+    const StrengthReport b = check_strength(post, by_carved, fine).report;
     for (const StrengthReport& report : {a, b}) {
         REQUIRE(report.cases.size() == 1);
         CHECK(report.cases[0].applied_n[0] == Approx(8.0));
