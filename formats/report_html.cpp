@@ -8,6 +8,7 @@
 #include "formats/report_assets.h"
 #include "formats/report_chart.h"
 #include "formats/report_mesh.h"
+#include "formats/report_strength.h"
 #include "formats/report_tables.h"
 
 namespace fretwork {
@@ -63,11 +64,9 @@ std::string stress_section(const ReportObject& object) {
     const ShellStress& stress = object.views.stress;
     std::string html = "<section><h2>Stress</h2>\n";
     html += fmt::format(
-        "<p class=\"soft\">By {}, in MPa. Before: the first pattern, with its pieces joined and nothing more. After: "
-        "the reinforced one. Both have the same loads and the same colours; the first class of the histogram holds all "
-        "that "
-        "is lower, and grey is what no strand stands for.</p>\n",
-        html_escaped(stress.name));
+        "<p class=\"soft\">By {}, in MPa. Before: {}. After: {}. Both have the same loads and the same colours; the "
+        "first class of the histogram holds all that is lower, and grey is what nothing is known of.</p>\n",
+        html_escaped(stress.name), html_escaped(stress.before_name), html_escaped(stress.after_name));
     html += pictures(object.views.stresses) + stress_legend(stress_scale(stress));
     return html + stress_table(stress) + stress_histogram(stress, stress_scale(stress)) + "</section>\n";
 }
@@ -88,6 +87,7 @@ std::string object_html(const ReportObject& object, bool several, ReportTimes ti
     html += verdicts(object.report) + viewer(object.views.model);
     html += "<section><h2>From example to object</h2>\n" + pictures(object.views.steps) + "</section>\n";
     html += stress_section(object) + iterations_section(object.report);
+    if (object.report.strength) html += strength_section(*object.report.strength);
     html += "<div class=\"columns\">\n" + width_section(object.report) + printability_section(object.report) +
             mesh_section(object.report) + pattern_section(object.report) + "</div>\n";
     html += warnings(object.report) + settings_section(object.report);

@@ -61,7 +61,12 @@ std::string verdicts(const RunReport& report) {
                  pieces == 1 ? "one piece" : fmt::format("{} pieces for {} parts", pieces, report.shell.components));
     const bool valid = mesh.closed_manifold() && mesh.non_manifold_vertices == 0 && mesh.self_intersections == 0;
     html += chip(valid, valid ? "valid mesh" : "the mesh has faults");
-    html += chip(report.structure.max_pa <= report.structure.allowable_pa, report.structure.verdict);
+    if (report.strength)
+        html += chip(report.strength->faults.empty(),
+                     fmt::format("factor of safety {:.3g}, asked is {:.3g}", report.strength->check.report.least_factor,
+                                 report.strength->check.report.safety_factor));
+    else
+        html += chip(report.structure.max_pa <= report.structure.allowable_pa, report.structure.verdict);
     if (report.print)
         html +=
             chip(report.print->faults.empty(),

@@ -279,6 +279,7 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
                               make_anew, r.slice(0.02, 1.0));
         });
         note_strength(rounds.record, report);
+        if (result.trace) result.trace->stress = analyzed_stress(rounds, resolved.material);
         result.stress_mpa = std::move(rounds.on_shell.stress_mpa);
         made = std::move(rounds.object);
     }

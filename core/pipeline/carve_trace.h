@@ -18,8 +18,9 @@ struct StressField {
 /// Stress before and after reinforcement, whatever analysis it comes from. Both are of the same loads and the same
 /// material, so that they can be compared.
 struct ShellStress {
-    std::string name;         ///< of the analysis, for a caption
-    std::string sample_name;  ///< what a sample is, in the plural
+    std::string name;                     ///< of the analysis, for a caption
+    std::string sample_name;              ///< what a sample is, in the plural
+    std::string before_name, after_name;  ///< what was looked at
     StressField before, after;
     double allowable_mpa = 0.0;
 };

@@ -53,6 +53,8 @@ ShellStress design_stress(const SurfaceVoxels& shell, const SolidStates& first_s
     ShellStress stress;
     stress.name = "finite elements of the design model";
     stress.sample_name = "strands";
+    stress.before_name = "the first pattern, with its pieces joined and nothing more";
+    stress.after_name = "the reinforced one";
     stress.before = stress_on_voxels(shell, first_solid, loop.first_scored);
     stress.after = stress_on_voxels(shell, loop.solid, loop.last_scored);
     stress.allowable_mpa = loop.records.back().allowable_pa / kMegapascal;

@@ -60,6 +60,7 @@ class Rounds {
         best_now_ = rounds.size() == 1 || least > best_;
         if (!best_now_) return found;
         best_ = least;
+        if (rounds.size() == 1) result_.first = found;
         result_.on_shell = found;
         result_.record.check = std::move(check);
         result_.record.check.voxels = {};
@@ -99,7 +100,29 @@ class Rounds {
     StrengthRounds result_;
 };
 
+/// Of surface voxels with a wall below.
+StressField field_of(const ShellStrength& strength) {
+    StressField field;
+    field.voxel_mpa = strength.stress_mpa;
+    for (const float mpa : strength.stress_mpa)
+        if (mpa >= 0.0F) field.samples_mpa.push_back(double{mpa});
+    std::ranges::sort(field.samples_mpa);
+    return field;
+}
+
 }  // namespace
+
+ShellStress analyzed_stress(const StrengthRounds& rounds, const Material& material) {
+    ShellStress stress;
+    stress.name = "the full analysis of every voxel of the wall";
+    stress.sample_name = "voxels of the surface, each with the worst of the wall below it";
+    stress.before_name = "the object as the fast model had reinforced it";
+    stress.after_name = "the object that came out";
+    stress.before = field_of(rounds.first);
+    stress.after = field_of(rounds.on_shell);
+    stress.allowable_mpa = material.strength_z_mpa / rounds.record.check.report.safety_factor;
+    return stress;
+}
 
 StrengthRounds strengthen(MadeObject object, const SurfaceVoxels& shell, const GeodesicLinks& links,
                           const SurfaceLoads& loads, const StrengthRoundSettings& settings, const MakeObject& make,

@@ -7,6 +7,7 @@
 
 #include "core/base/run_control.h"
 #include "core/enlarge/enlarge_features.h"
+#include "core/pipeline/carve_trace.h"
 #include "core/pipeline/run_report.h"
 #include "core/pipeline/shell_strength.h"
 #include "core/solidify/solidify.h"
@@ -36,8 +37,11 @@ struct StrengthRoundSettings {
 struct StrengthRounds {
     MadeObject object;  ///< the strongest of all rounds
     StrengthRecord record;
-    ShellStrength on_shell;  ///< of that object
+    ShellStrength first, on_shell;  ///< of the object that came in, and of that one
 };
+
+/// What the full analysis says of the object before the rounds and after them.
+ShellStress analyzed_stress(const StrengthRounds& rounds, const Material& material);
 
 /// Ends when the least factor of safety is the asked one; after the last round; when the budget is spent or all around
 /// the weak places is solid; or when two rounds have not made it 2 % stronger.

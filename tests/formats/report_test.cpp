@@ -8,6 +8,7 @@
 #include "formats/jpeg_writer.h"
 #include "formats/report_chart.h"
 #include "formats/report_mesh.h"
+#include "formats/report_strength.h"
 #include "support/make_meshes.h"
 
 namespace fretwork {
@@ -79,6 +80,34 @@ TEST_CASE("report: the packed mesh holds every vertex, triangle and fact", "[for
     wrong = mesh;
     wrong.vertex_colors.pop_back();
     CHECK_THROWS_AS(report_mesh_json(wrong), InvalidInput);
+}
+
+TEST_CASE("report: tells whether it holds, load by load, place by place, round by round", "[formats][report]") {
+    StrengthRecord strength;
+    strength.rounds = {{0.75, 12, 34}, {1.5, 3, 0}};
+    StrengthReport& report = strength.check.report;
+    report.least_factor = 1.5;
+    report.safety_factor = 2.0;
+    report.voxels = 4321;
+    report.cases.resize(2);
+    report.cases[0].name = "push <up>";
+    report.cases[1].name = "pinch";
+    report.cases[1].least_factor = 7.25;
+    report.weakest = {{Vec3(1, -2.25, 3), 1.5, 1e6, 2.5e6, 1}};
+    strength.stopped_by = "no gain";
+    const std::string html = strength_section(strength);
+    for (const char* told : {"Not as asked.", "4321 voxels", "factor of safety of 1.5; asked is 2", "push &lt;up&gt;",
+                             "<td class=\"number\">7.25</td>", "(1.0, -2.2, 3.0) mm",
+                             "<td class=\"number\">2.5</td><td class=\"number\">pinch</td>",
+                             ">as carved</th><td class=\"number\">0.75</td><td class=\"number\">12</td><td "
+                             "class=\"number\">34</td>",
+                             ">round 1</th>", "The rounds ended: no gain."}) {
+        CAPTURE(told);
+        CHECK(html.find(told) != std::string::npos);
+    }
+    CHECK(html.find("push <up>") == std::string::npos);
+    report.least_factor = 2.0;
+    CHECK(strength_section(strength).find("Yes.") != std::string::npos);
 }
 
 TEST_CASE("report: one scale for both patterns, three decades below a round number", "[formats][report]") {
