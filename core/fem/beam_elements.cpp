@@ -1,5 +1,6 @@
 #include "core/fem/beam_elements.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "core/base/parallel.h"
@@ -29,11 +30,20 @@ BeamElements::BeamElements(const BeamWedgeMesh& mesh, const Material& material, 
     const Elasticity D = elasticity(material);
     for (const Wedge& wedge : mesh.wedges) nodes_.add(wedge.nodes);
     for (const Beam& beam : mesh.beams) nodes_.add(beam.nodes);
+    for (const Tie& tie : mesh.ties) nodes_.add(tie.nodes);
     wedge_stiffness_.resize(mesh.wedges.size());
     beam_stiffness_.resize(mesh.beams.size());
     beam_stress_.resize(mesh.beams.size());
     section_.resize(mesh.beams.size());
     is_link_.resize(mesh.beams.size());
+    tie_stiffness_.resize(mesh.ties.size());
+    parallel_for(mesh.ties.size(), 32, [&](std::size_t t) {
+        const Corners<8> corners = corners_of(mesh, mesh.ties[t].nodes);
+        const BeamSection section{mesh.ties[t].side_mm, mesh.ties[t].side_mm};
+        const Vec3 along = corners.col(1) + corners.col(2) - corners.col(0) - corners.col(3);
+        const Vec3 across = along.norm() > 0.0 ? along.unitOrthogonal() : Vec3::UnitZ();
+        tie_stiffness_[t] = frame_link_matrices(corners, across, section, material).stiffness;
+    });
     parallel_for(mesh.wedges.size(), 64, [&](std::size_t w) {
         wedge_stiffness_[w] = wedge6_matrices(corners_of(mesh, mesh.wedges[w].nodes), D).stiffness;
     });
@@ -63,6 +73,8 @@ void BeamElements::assemble(const StiffnessPattern& pattern, std::span<const dou
     for (std::size_t w = 0; w < wedges(); ++w) pattern.add_element(w, 1.0, wedge_stiffness_[w].data(), values);
     for (std::size_t e = 0; e < beams(); ++e)
         pattern.add_element(wedges() + e, beam_factors[e], beam_stiffness_[e].data(), values);
+    for (std::size_t t = 0; t < tie_stiffness_.size(); ++t)
+        pattern.add_element(wedges() + beams() + t, 1.0, tie_stiffness_[t].data(), values);
 }
 
 double BeamElements::beam_score_mpa(std::size_t beam, const Eigen::Matrix<double, 24, 1>& displacements_mm) const {

@@ -13,7 +13,7 @@
 
 namespace fretwork {
 
-/// Elements are numbered wedges first, then beams: element wedges() + e is the beam of edge e.
+/// Elements are numbered wedges first, then beams, then ties: element wedges() + e is the beam of edge e.
 class BeamElements {
   public:
     /// Cost: about 20 microseconds per element; parallel.
@@ -39,6 +39,7 @@ class BeamElements {
     std::vector<WedgeStiffness> wedge_stiffness_;
     std::vector<BeamStiffness> beam_stiffness_;
     std::vector<StressOperators> beam_stress_;
+    std::vector<BeamStiffness> tie_stiffness_;
     std::vector<BeamSection> section_;
     std::vector<std::uint8_t> is_link_;  ///< per beam: folds, so that a frame link stands for it
 };

@@ -63,6 +63,7 @@ void BeamModel::Impl::build_geometry(const SurfaceVoxels& shell, const SolidStat
     BeamGeometry geometry;
     geometry.thickness_mm = settings.thickness_mm;
     mesh = build_beam_wedge_mesh(shell, graph, widths.at_sample_voxels, geometry);
+    add_ties(sheet_ties(shell, solid, graph, settings.facing), mesh);
     for (EdgeIndex e = 0; e < graph.edges.size(); ++e)
         width_factors.push_back(width_factor(widths.along_edge_mm[e], mesh.beams[e].width_mm));
 }

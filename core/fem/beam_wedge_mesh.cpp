@@ -191,4 +191,18 @@ BeamWedgeMesh build_beam_wedge_mesh(const SurfaceVoxels& shell, const AbstractGr
     return mesh;
 }
 
+void add_ties(const std::vector<SheetTie>& ties, BeamWedgeMesh& mesh) {
+    // Two corners of a fan that lie about opposite, so that the middle of their nodes is about the sample.
+    const auto corners = [&](SampleIndex s) {
+        const std::uint32_t first = mesh.first_node[s] + 2;
+        const std::uint32_t count = (mesh.first_node[s + 1] - first) / 2;
+        return std::pair<NodeIndex, NodeIndex>(first, first + 2 * (count / 2));
+    };
+    for (const SheetTie& tie : ties) {
+        const auto [a0, a1] = corners(tie.a);
+        const auto [b0, b1] = corners(tie.b);
+        mesh.ties.push_back({{a0, b0, b1, a1, a0 + 1, b0 + 1, b1 + 1, a1 + 1}, std::sqrt(tie.area_mm2)});
+    }
+}
+
 }  // namespace fretwork

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/vec.h"
+#include "core/fem/facing_sheets.h"
 #include "core/fem/stiffness_pattern.h"
 #include "core/graph/abstract_graph.h"
 #include "core/shell/surface_voxels.h"
@@ -30,7 +31,13 @@ struct Beam {
     /// Corners of the hexahedron: 0 3 7 4 at sample a, 1 2 6 5 at sample b; 0 and 1 right bottom seen from a to b.
     std::array<NodeIndex, 8> nodes;
     double width_mm = 0.0;  ///< mean of the two ends
-    bool folds = false;     ///< a Jacobian is not positive, at a Gauss point or a corner
+    bool folds = false;     ///< a Jacobian is not positive, at a Gauss point, a corner or the centre
+};
+
+/// Stands for the material between two sheets whose walls have grown together.
+struct Tie {
+    std::array<NodeIndex, 8> nodes;  ///< as of a beam
+    double side_mm = 0.0;            ///< of its square section
 };
 
 /// Nodes come in pairs, bottom and top, half a wall below and above the surface point along the sample's normal.
@@ -39,6 +46,7 @@ struct BeamWedgeMesh {
     std::vector<std::uint32_t> first_node;  ///< per sample; its first two nodes are the fan's centre
     std::vector<Wedge> wedges;              ///< grouped by sample
     std::vector<Beam> beams;                ///< beams[e] belongs to edge e of the graph
+    std::vector<Tie> ties;
     std::size_t folded_beams = 0;
 
     [[nodiscard]] std::size_t samples() const { return first_node.size() - 1; }
@@ -51,5 +59,8 @@ struct BeamWedgeMesh {
 /// \param half_width_voxels  of the pattern around each sample (`pattern_width.h`)
 BeamWedgeMesh build_beam_wedge_mesh(const SurfaceVoxels& shell, const AbstractGraph& graph,
                                     std::span<const float> half_width_voxels, const BeamGeometry& geometry);
+
+/// Adds a tie between the fans of two samples, from two corners of one to two of the other, bottom and top.
+void add_ties(const std::vector<SheetTie>& ties, BeamWedgeMesh& mesh);
 
 }  // namespace fretwork

@@ -159,7 +159,7 @@ ElementMatrices<Shape::kNodes, Shape::kPoints> integrate(const Corners<Shape::kN
 
 template <class Shape>
 double least_determinant(const Corners<Shape::kNodes>& corners) {
-    double least = std::numeric_limits<double>::infinity();
+    double least = jacobian<Shape>(corners, Shape::center()).determinant();
     for (const QuadraturePoint& p : Shape::points())
         least = std::min(least, jacobian<Shape>(corners, p.at).determinant());
     for (int n = 0; n < Shape::kNodes; ++n)

@@ -43,7 +43,8 @@ Hex8Matrices hex8_matrices(const Corners<8>& corners_mm, const Elasticity& D);
 /// \throws InvalidInput  a Jacobian that is not positive at a Gauss point.
 Wedge6Matrices wedge6_matrices(const Corners<6>& corners_mm, const Elasticity& D);
 
-/// Least determinant of the Jacobian over Gauss points and corners, mm^3; not positive for elements that fold over.
+/// Least determinant of the Jacobian over Gauss points, corners and the centre, mm^3; not positive for elements that
+/// fold over.
 double least_jacobian(const Corners<8>& corners_mm);
 double least_jacobian(const Corners<6>& corners_mm);
 

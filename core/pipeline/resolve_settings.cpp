@@ -54,6 +54,12 @@ int choose_halvings(const Settings& settings, const SurfaceFacts& surface, const
     return halvings;
 }
 
+// The printed rules know a surface, and nothing of walls that meet behind it.
+double inner_wall_mm(ReinforceRules rules, const SolidifySettings& wall) {
+    if (rules == ReinforceRules::kPaper || wall.side == WallSide::kOutward) return 0.0;
+    return wall.side == WallSide::kCentred ? 0.5 * wall.thickness_mm : wall.thickness_mm;
+}
+
 // Goes over to the coarser grid. What the settings ask for was checked against the grid that they name; here a wall
 // that the coarser one cannot hold grows to one that it can.
 void coarsen(int halvings, ResolvedSettings& r) {
@@ -66,6 +72,7 @@ void coarsen(int halvings, ResolvedSettings& r) {
     r.reinforce.pattern_radius_voxels = std::max(r.reinforce.pattern_radius_voxels / factor, kLeastRadiusVoxels);
     r.solidify.thickness_mm = std::max(r.solidify.thickness_mm, kLeastWallVoxels * r.voxel_mm);
     r.reinforce.thickness_mm = r.solidify.thickness_mm;
+    r.reinforce.inner_wall_mm = inner_wall_mm(r.reinforce.rules, r.solidify);
     // Thin strokes grown to two coarse voxels would show a wall with a few holes instead of the pattern.
     r.enlarge.draft = true;
 }
@@ -143,6 +150,7 @@ ReinforceSettings reinforce_settings(const Settings& settings, const ResolvedSet
     const StructureOptions& o = settings.structure;
     ReinforceSettings s = o.steps;
     s.thickness_mm = r.solidify.thickness_mm;
+    s.inner_wall_mm = inner_wall_mm(s.rules, r.solidify);
     const double radius_mm = o.pattern_radius_mm.value_or(std::max(half_stroke_mm, 0.5 * r.enlarge.min_feature_mm));
     s.pattern_radius_voxels = radius_mm / r.voxel_mm;
     if (o.pattern_radius_mm && s.pattern_radius_voxels < kLeastRadiusVoxels * kSlack)

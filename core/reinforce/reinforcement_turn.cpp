@@ -73,6 +73,7 @@ ReinforcementTurn::ReinforcementTurn(const ReinforceContext& context, BridgePain
     model.thickness_mm = settings.thickness_mm;
     model.soft_factor = settings.soft_factor;
     model.bridge_half_width_voxels = settings.pattern_radius_voxels;
+    model.facing = context.facing;
     model_.emplace(shell, state, graph_, std::move(half_width_voxels), context.profile, context.material, model, run);
     for (const AbstractEdge& edge : graph_.edges) states_.push_back(edge.state);
     run.checkpoint("structure", 0.4);

@@ -27,6 +27,7 @@ struct ReinforceContext {
     const ForceProfile& profile;
     const Material& material;
     const ReinforceSettings& settings;
+    const std::vector<VoxelIndex>& facing;  ///< of `facing_voxels`
 };
 
 /// Works on a pattern for the length of one turn: abstract graph, beam model, then bridges by one

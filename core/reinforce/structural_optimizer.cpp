@@ -92,6 +92,7 @@ struct StructuralOptimizer::Impl {
     Adjacency firm;
     ShellComponents shell_components;
     BridgePainter painter;
+    std::vector<VoxelIndex> facing;    ///< walls that have grown together bear loads together
     std::vector<std::uint8_t> keep;    ///< solid by the user's wish or forced by an earlier turn
     std::vector<std::uint8_t> forced;  ///< by an earlier turn
 
@@ -111,6 +112,7 @@ struct StructuralOptimizer::Impl {
           firm(firm_links(shell.adjacency)),
           shell_components(connected_components(shell.adjacency)),
           painter(shell, firm, settings.pattern_radius_voxels),
+          facing(facing_voxels(shell_in, settings_in.inner_wall_mm)),
           keep(std::move(keep_in)),
           forced(shell.size(), 0),
           voxels_left(static_cast<std::size_t>(settings.material_budget * static_cast<double>(shell.size()))) {
@@ -200,7 +202,7 @@ void merge_record(const ReinforceRecord& turn, ReinforceRecord& record) {
 }  // namespace
 
 void StructuralOptimizer::Impl::reinforce_as_printed(SolidStates& state, Outcome& outcome, const RunControl& run) {
-    const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
+    const ReinforceContext context{shell, firm, shell_components, profile, material, settings, facing};
     ReinforcementTurn turn(context, painter, state, outcome.record.iteration, outcome.sample_radius, run);
     turn.take_stock(run);
     outcome.scored = turn.scored_paths();
@@ -216,7 +218,7 @@ void StructuralOptimizer::Impl::reinforce_as_printed(SolidStates& state, Outcome
 }
 
 void StructuralOptimizer::Impl::reinforce(SolidStates& state, Outcome& outcome, const RunControl& run) {
-    const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
+    const ReinforceContext context{shell, firm, shell_components, profile, material, settings, facing};
     ReinforcementTurn turn(context, painter, state, outcome.record.iteration, outcome.sample_radius, run);
     turn.take_stock(run);
     outcome.scored = turn.scored_paths();
@@ -241,7 +243,7 @@ void StructuralOptimizer::Impl::reinforce(SolidStates& state, Outcome& outcome, 
 
 /// The last turn adds nothing against stress, but says what the result bears.
 void StructuralOptimizer::Impl::take_stock(SolidStates& state, Outcome& outcome, const RunControl& run) {
-    const ReinforceContext context{shell, firm, shell_components, profile, material, settings};
+    const ReinforceContext context{shell, firm, shell_components, profile, material, settings, facing};
     ReinforcementTurn turn(context, painter, state, outcome.record.iteration, outcome.sample_radius, run);
     turn.take_stock(run);
     outcome.scored = turn.scored_paths();

@@ -22,6 +22,7 @@ enum class ReinforceRules {
 struct ReinforceSettings {
     ReinforceRules rules = ReinforceRules::kDefault;
     double thickness_mm = 2.0;           ///< final wall, seen by the finite elements
+    double inner_wall_mm = 0.0;          ///< how far the wall reaches inside the surface; 0: not at all
     double pattern_radius_voxels = 3.0;  ///< r_pattern; at least 1.5
     int samples = 1000;                  ///< |S|; the paper uses 500 to 1000
     double safety_factor = 2.0;          ///< allowable stress = strength_z / safety_factor

@@ -25,14 +25,6 @@ double share_of_solid(const SolidStates& solid) {
     return static_cast<double>(std::ranges::count(solid, SolidState::kSolid)) / static_cast<double>(solid.size());
 }
 
-/// Marks where the final states differ from what the labels show.
-std::vector<Over> where_states_differ(const SolidStates& shown, const SolidStates& states) {
-    std::vector<Over> over(states.size(), Over::kNothing);
-    for (std::size_t v = 0; v < states.size(); ++v)
-        if (shown[v] != states[v]) over[v] = states[v] == SolidState::kSolid ? Over::kSolid : Over::kEmpty;
-    return over;
-}
-
 std::vector<Over> where_forced(const SolidStates& shown, const std::vector<std::uint8_t>& forced) {
     std::vector<Over> over(forced.size(), Over::kNothing);
     for (std::size_t v = 0; v < forced.size(); ++v)
@@ -45,6 +37,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 }  // namespace
+
+std::vector<Over> where_states_differ(const SolidStates& shown, const SolidStates& states) {
+    std::vector<Over> over(states.size(), Over::kNothing);
+    for (std::size_t v = 0; v < states.size(); ++v)
+        if (shown[v] != states[v]) over[v] = states[v] == SolidState::kSolid ? Over::kSolid : Over::kEmpty;
+    return over;
+}
 
 BenchModel make_model(std::string name, TriangleMesh mesh, int resolution, bool open) {
     const double scale = kSideMm / longest_side(mesh);

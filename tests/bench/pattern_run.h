@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/exemplar/exemplar.h"
 #include "core/mesh/triangle_mesh.h"
@@ -54,6 +55,9 @@ struct PatternRun {
 /// \param settings  a preset, a seed, and whatever is tried; the picture's size on the surface is set here
 PatternRun run_pattern(const BenchModel& model, const BenchExemplar& exemplar, Settings settings,
                        WithStructure structure);
+
+/// Marks where the final states differ from what the labels show.
+std::vector<likeness::ShownPattern::Over> where_states_differ(const SolidStates& shown, const SolidStates& states);
 
 /// The plate from the front.
 likeness::PatternPicture plate_picture(const BenchModel& plate, const likeness::ShownPattern& pattern,

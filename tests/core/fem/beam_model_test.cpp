@@ -10,10 +10,12 @@
 #include "core/fem/beam_elements.h"
 #include "core/fem/beam_wedge_mesh.h"
 #include "core/fem/beam_widths.h"
+#include "core/fem/facing_sheets.h"
 #include "core/fem/sample_loads.h"
 #include "core/fem/solid_elements.h"
 #include "core/graph/connect_samples.h"
 #include "core/graph/poisson_disk.h"
+#include "core/graph/shortest_path_forest.h"
 #include "core/shell/voxelize.h"
 #include "support/carved_shells.h"
 #include "support/make_meshes.h"
@@ -293,6 +295,92 @@ TEST_CASE("beam model: a strip in tension feels force over area", "[fem]") {
     }
     REQUIRE(along.size() >= 5);
     std::ranges::sort(along);
+}
+
+/// A closed plate 60 x 20 x 3 of 0.5 mm voxels with a strip along the middle of its top and its bottom, not over the
+/// rims.
+Case two_strips() {
+    const TriangleMesh plate = make_box(Vec3::Zero(), Vec3(60, 20, 3));
+    const SurfaceVoxels shell = voxelize(plate, {.resolution = 120});
+    SolidStates strips(shell.size(), SolidState::kEmpty);
+    for (VoxelIndex v = 0; v < shell.size(); ++v) {
+        const Vec3& p = shell.points_mm[v];
+        const bool flat = std::abs(shell.normals[v][2]) > 0.9F;
+        if (flat && p[0] > 3.0 && p[0] < 57.0 && p[1] > 4.0 && p[1] < 16.0) strips[v] = SolidState::kSolid;
+    }
+    return make_case(plate, 120, &strips, 200);
+}
+
+TEST_CASE("facing sheets: those whose walls meet inside, and no others", "[fem][property]") {
+    const Case c = two_strips();
+    const std::vector<VoxelIndex> meeting = facing_voxels(c.shell, 2.0);
+    const std::vector<VoxelIndex> apart = facing_voxels(c.shell, 1.0);
+    REQUIRE(meeting.size() == c.shell.size());
+    double strip_mm2 = 0.0;
+    for (VoxelIndex v = 0; v < c.shell.size(); ++v) {
+        if (c.solid[v] != SolidState::kSolid) continue;
+        strip_mm2 += 0.5 * static_cast<double>(c.shell.area_mm2[v]);
+        CHECK(apart[v] == kNoVoxel);
+        REQUIRE(meeting[v] != kNoVoxel);
+        const Vec3 way = c.shell.points_mm[meeting[v]] - c.shell.points_mm[v];
+        CHECK(std::abs(std::abs(way[2]) - 3.0) < 1e-9);
+        CHECK(way.head<2>().norm() <= c.shell.grid.voxel_mm);
+    }
+    CHECK(strip_mm2 == Approx(54.0 * 12.0).epsilon(0.1));
+    double tied_mm2 = 0.0;
+    for (const SheetTie& tie : sheet_ties(c.shell, c.solid, c.graph, meeting)) {
+        CHECK(tie.a < tie.b);
+        CHECK(std::abs(c.shell.normals[c.graph.samples[tie.a]][2] + c.shell.normals[c.graph.samples[tie.b]][2]) < 0.1F);
+        tied_mm2 += tie.area_mm2;
+    }
+    CHECK(tied_mm2 > 0.8 * strip_mm2);
+    CHECK(tied_mm2 <= strip_mm2 * (1.0 + 1e-9));
+    CHECK(sheet_ties(c.shell, c.solid, c.graph, {}).empty());
+    const std::vector<VoxelIndex> outside = facing_voxels(c.shell, 0.0);
+    CHECK(std::ranges::all_of(outside, [](VoxelIndex v) { return v == kNoVoxel; }));
+}
+
+/// Largest score of the solid edges on the top and on the bottom of the plate, held at one end, pressed down on the top
+/// at the other.
+std::pair<double, double> scores_above_and_below(const Case& c, double inner_wall_mm) {
+    LoadCase press;
+    PatchLoad patch;
+    patch.force_n = Vec3(0, 0, -1);
+    for (VoxelIndex v = 0; v < c.shell.size(); ++v) {
+        if (c.solid[v] != SolidState::kSolid) continue;
+        if (c.shell.points_mm[v][0] < 9.0) press.fixed.push_back(v);
+        if (c.shell.points_mm[v][0] > 52.0 && c.shell.normals[v][2] > 0.0F) patch.voxels.push_back(v);
+    }
+    press.loads.push_back(patch);
+    BeamModelSettings settings;
+    settings.soft_factor = 1e-7;  // what is empty carries nothing over the rims
+    settings.facing = facing_voxels(c.shell, inner_wall_mm);
+    const ForceProfile profile{{press}};
+    BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), profile, material_by_name("PLA"),
+                    settings);
+    const std::vector<double> scores = model.edge_scores_pa(states_of(c.graph));
+    std::pair<double, double> highest{0.0, 0.0};
+    for (EdgeIndex e = 0; e < scores.size(); ++e) {
+        if (c.graph.edges[e].state != EdgeState::kSolid) continue;
+        const bool above = c.shell.normals[c.graph.samples[c.graph.edges[e].a]][2] > 0.0F;
+        double& side = above ? highest.first : highest.second;
+        side = std::max(side, scores[e]);
+    }
+    return highest;
+}
+
+TEST_CASE("beam model: sheets whose walls have grown together bear a load together", "[fem]") {
+    const Case c = two_strips();
+    const auto [alone, unloaded] = scores_above_and_below(c, 1.0);
+    const auto [above, below] = scores_above_and_below(c, 2.0);
+    CAPTURE(alone, unloaded, above, below);
+    REQUIRE(alone > 0.0);
+    CHECK(unloaded < 0.1 * alone);
+    // A thicker body bends less; its two sides are stretched and pressed about alike.
+    CHECK(above < 0.6 * alone);
+    CHECK(above > 0.05 * alone);
+    CHECK(below > 0.5 * above);
+    CHECK(below < 2.0 * above);
 }
 
 TEST_CASE("beam model: scores follow the load, and self-weight does not know Young's modulus", "[fem][property]") {

@@ -92,6 +92,21 @@ struct Contradiction {
     const char* remedy;  ///< the key whose value in the message makes it work
 };
 
+TEST_CASE("resolve: how far walls reach inside follows from their side", "[pipeline]") {
+    Settings settings;
+    settings.shell.thickness_mm = 2.0;
+    const auto inner_mm = [&](bool open) {
+        return resolve_settings(settings, {100.0, open}, kExemplar).reinforce.inner_wall_mm;
+    };
+    CHECK(inner_mm(false) == 2.0);
+    CHECK(inner_mm(true) == 1.0);
+    settings.shell.side = WallSide::kOutward;
+    CHECK(inner_mm(false) == 0.0);
+    settings.shell.side = WallSide::kInward;
+    settings.structure.steps.rules = ReinforceRules::kPaper;
+    CHECK(inner_mm(false) == 0.0);
+}
+
 TEST_CASE("resolve: a contradiction names both values and one that works", "[pipeline]") {
     const auto c = GENERATE(values<Contradiction>({
         {{"shell.thickness_mm=0.5"}, "shell.thickness_mm = 0.5", "0.390625", "shell.resolution"},
