@@ -10,11 +10,10 @@ void fail_parse(std::string_view source, std::string_view place, std::string_vie
     throw InvalidInput(message);
 }
 
-std::string in_quotes(std::string_view text) {
-    constexpr std::size_t kLongest = 40;
+std::string in_quotes(std::string_view text, std::size_t longest) {
     constexpr std::string_view kHex = "0123456789abcdef";
     std::string out = "\"";
-    for (const char c : text.substr(0, kLongest)) {
+    for (const char c : text.substr(0, longest)) {
         const auto byte = static_cast<unsigned char>(c);
         if (byte >= 0x20 && byte < 0x7f) {
             out += c;
@@ -24,7 +23,7 @@ std::string in_quotes(std::string_view text) {
             out += kHex[byte & 15];
         }
     }
-    out += text.size() > kLongest ? "...\"" : "\"";
+    out += text.size() > longest ? "...\"" : "\"";
     return out;
 }
 

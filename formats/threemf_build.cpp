@@ -69,6 +69,9 @@ Build::Unfolded Build::unfold(const ObjectKey& key, const std::string& from, std
         sum.depth = std::max(sum.depth, part.depth + 1);
     }
     check_depth(sum.depth);
+    if (object.mesh.triangles.empty() && object.components.empty())
+        warnings_.push_back(key.part + ": object " + std::to_string(key.id) +
+                            " has no triangles, or a shape of an extension that is not read");
     open_.erase(key);
     return unfolded_[key] = sum;
 }

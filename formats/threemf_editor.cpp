@@ -142,6 +142,8 @@ struct ThreemfEditor::Impl {
         if (place == objects.end() || place->second.mesh.name.empty())
             fail_parse(source + ": " + key.part, "resources", "no object " + std::to_string(key.id) + " with a mesh",
                        "one");
+        if (!place->second.slices.empty())
+            warnings.push_back(fmt::format("object {}: its slices show it as it was; it no longer names them", key.id));
         for (const std::string& name : place->second.beside_triangles)
             warnings.push_back(
                 fmt::format("object {}: <{}> refers to triangles that are carved away and is left out", key.id, name));

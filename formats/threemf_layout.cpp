@@ -117,6 +117,12 @@ class LayoutScanner {
             place_ = &layout_.objects[static_cast<ResourceId>(id)];
             place_->object = tag;
         }
+        for (const XmlAttributeSpan& attribute : attributes) {
+            const std::size_t colon = attribute.name.find(':');
+            if (place_ != nullptr && colon != attribute.name.npos &&
+                space_of(attribute.name.substr(0, colon + 1)) == kSlice)
+                place_->slices.push_back(attribute);
+        }
     }
 
     void enter_mesh(const XmlTag& tag, const std::vector<XmlAttributeSpan>& attributes) {

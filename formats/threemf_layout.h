@@ -19,6 +19,7 @@ struct ObjectPlace {
     XmlTag mesh;
     TextSpan mesh_content;                      ///< between <mesh> and </mesh>
     std::optional<XmlAttributeSpan> volume;     ///< the mesh's volumeid
+    std::vector<XmlAttributeSpan> slices;       ///< attributes by which the object names slices of itself
     std::vector<std::string> beside_triangles;  ///< further elements of the mesh, which refer to its vertices
 };
 

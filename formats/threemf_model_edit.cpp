@@ -122,6 +122,7 @@ void ModelEdit::replace_mesh(ResourceId id, CarvedObjectText& carved, const std:
     } else {
         drop_colors(place.object, dropped);
     }
+    for (const XmlAttributeSpan& slices : place.slices) drop(slices.span);
     if (place.volume) changes_.push_back({place.volume->span, {}, nullptr, {}});
     if (carved.volume() != 0) {
         const std::size_t end = end_of_attributes(xml_, place.mesh);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 namespace fretwork::threemf {
 
@@ -12,12 +13,25 @@ inline constexpr std::string_view kMaterial = "http://schemas.microsoft.com/3dma
 inline constexpr std::string_view kVolumetric = "http://schemas.3mf.io/3dmanufacturing/volumetric/2022/01";
 inline constexpr std::string_view kProduction = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
 inline constexpr std::string_view kTriangleSets = "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07";
+inline constexpr std::string_view kSlice = "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07";
 inline constexpr std::string_view kFretwork = "http://fretwork.dev/3mf/2026/11";
 
 /// Whether a model may require the extension: what it says is read, or does not change the shape.
 constexpr bool is_understood(std::string_view space) {
     constexpr std::array known = {kCore, kMaterial, kVolumetric, kProduction, kTriangleSets, kFretwork};
     return std::ranges::find(known, space) != known.end();
+}
+
+/// What the specifications call an extension that is carried along and not read; empty where it is none of theirs.
+constexpr std::string_view name_of_carried(std::string_view space) {
+    constexpr std::pair<std::string_view, std::string_view> kCarried[] = {
+        {"/beamlattice/", "beam lattice"},     {"/slice/", "slice"},
+        {"/displacement/", "displacement"},    {"/booleanoperations/", "boolean operations"},
+        {"/securecontent/", "secure content"}, {"/implicit/", "implicit functions"},
+    };
+    for (const auto& [mark, name] : kCarried)
+        if (space.find(mark) != space.npos) return name;
+    return {};
 }
 
 inline constexpr std::string_view kSlic3r = "http://schemas.slic3r.org/3mf/2017/06";

@@ -37,6 +37,11 @@ Rgb8 color_at(const Vec3& p) {
     return color;
 }
 
+/// Up to 3 MPa, different from voxel to voxel.
+float stress_at(const Vec3& p) {
+    return static_cast<float>(1.5 + std::sin(0.11 * p[0]) * std::cos(0.13 * p[1]) + 0.5 * std::sin(0.07 * p[2]));
+}
+
 }  // namespace
 
 SpeedModel make_speed_model(int side) {
@@ -65,6 +70,8 @@ void add_voxels(SpeedModel& model, int cells) {
                 model.solid.push_back(solid ? SolidState::kSolid : SolidState::kEmpty);
                 model.reinforced.push_back(solid && x % 32 == 0 ? 1 : 0);
                 model.voxel_colors.push_back(color_at(center));
+                model.stress_mpa.push_back(solid ? stress_at(center) : -1.0F);
+                model.labels.push_back(static_cast<std::uint16_t>(1 + (x / 12 * 31 + y / 12) * 31 + z / 12));
             }
 }
 

@@ -17,6 +17,8 @@ struct SpeedModel {
     SolidStates solid;
     std::vector<std::uint8_t> reinforced;
     std::vector<Rgb8> voxel_colors;
+    std::vector<float> stress_mpa;
+    std::vector<std::uint16_t> labels;
 };
 
 /// The ball alone: 2 * 10^6 triangles for `side` = 1000, 2 side^2 for others. Colours in patches of some triangles, as

@@ -109,7 +109,8 @@ class Jobs {
             SpeedModel model = make_speed_model(options_.side);
             add_voxels(model, options_.cells);
             return cost_of([&] {
-                const VoxelData voxels{model.shell, model.solid, model.reinforced, model.voxel_colors};
+                const VoxelData voxels{model.shell,        model.solid,      model.reinforced,
+                                       model.voxel_colors, model.stress_mpa, model.labels};
                 CarvedPackage package;
                 package.objects.push_back({model.mesh, model.colors, "ball", &voxels});
                 write_carved_threemf(full(), package);

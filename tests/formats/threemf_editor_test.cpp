@@ -400,6 +400,58 @@ TEST_CASE("3mf editor: what refers to carved triangles is named", "[formats][thr
     CHECK_THROWS_AS(ThreemfEditor(input, "p", {{kRoot, 1}}).write({}), InvalidInput);
 }
 
+/// Two boxes; the second with more on its object and in its mesh, and after them further resources.
+std::string with_extension(const std::string& space, const std::string& attributes, const std::string& in_mesh,
+                           const std::string& resources, const std::string& items = "") {
+    std::string second = testing::make_mesh_object(2, make_box(Vec3(0, 0, 0), Vec3(1, 1, 1)), attributes);
+    second.insert(second.find("</mesh>"), in_mesh);
+    return make_package(make_model(make_tetrahedron(1) + second + resources,
+                                   "<item objectid=\"1\"/><item objectid=\"2\"/>" + items,
+                                   "xmlns:e=\"" + space + "\" "));
+}
+
+TEST_CASE("3mf editor: beam lattices, slices, displacement and boolean shapes are carried along",
+          "[formats][threemf][lossless]") {
+    const std::string lattice =
+        "<e:beamlattice radius=\"1\"><e:beams><e:beam v1=\"0\" v2=\"7\"/></e:beams></e:beamlattice>";
+    const std::string slices =
+        "<e:slicestack id=\"9\"><e:slice ztop=\"1\"><e:vertices><e:vertex x=\"0\" y=\"0\"/>"
+        "</e:vertices><e:polygon startv=\"0\"/></e:slice></e:slicestack>";
+    const std::string displaced =
+        "<e:displacement2d id=\"7\" path=\"/3D/d.png\"/><object id=\"3\"><e:displacementmesh>"
+        "<e:triangles did=\"8\"/></e:displacementmesh></object>";
+    const std::string boolean =
+        "<object id=\"3\"><e:booleanshape objectid=\"1\" operation=\"difference\"><e:boolean "
+        "objectid=\"2\"/></e:booleanshape></object>";
+    const std::string root = "http://schemas.microsoft.com/3dmanufacturing/";
+    const std::vector<std::string> inputs = {
+        with_extension(root + "beamlattice/2017/02", "", lattice, ""),
+        with_extension(root + "slice/2015/07", "e:slicestackid=\"9\" e:meshresolution=\"lowres\"", "", slices),
+        with_extension("http://schemas.3mf.io/3dmanufacturing/displacement/2023/10", "", "", displaced),
+        with_extension("http://schemas.3mf.io/3dmanufacturing/booleanoperations/2023/07", "", "", boolean)};
+    for (const std::string& input : inputs) {
+        const std::string was = part_of(input, kRoot), is = part_of(Carving().of(input, {{kRoot, 1}}), kRoot);
+        CHECK((after(is, "</mesh></object>") == after(was, "</mesh></object>")));
+        CHECK(ThreemfEditor(input, "p", {{kRoot, 1}}).warnings().empty());
+    }
+    // What shows a carved object as it was goes, by name.
+    for (const std::size_t i : {0u, 1u}) {
+        const ThreemfEditor editor(inputs[i], "p", {{kRoot, 2}});
+        REQUIRE(editor.warnings().size() == 1);
+        CHECK_THAT(editor.warnings()[0], Catch::Contains(i == 0 ? "<beamlattice>" : "its slices"));
+        const std::string is = part_of(Carving().of(inputs[i], {{kRoot, 2}}), kRoot);
+        CHECK_THAT(is, !Catch::Contains("slicestackid") && !Catch::Contains("meshresolution"));
+        CHECK(is.find("<e:slicestack id=\"9\">") == (i == 0 ? is.npos : is.find("<e:slicestack")));
+    }
+    // A shape that is not read but built is told of, and stays.
+    const std::string built = with_extension("http://schemas.3mf.io/3dmanufacturing/booleanoperations/2023/07", "", "",
+                                             boolean, "<item objectid=\"3\"/>");
+    const MeshFile file = read_threemf(built, "p");
+    REQUIRE(file.warnings.size() == 1);
+    CHECK_THAT(file.warnings[0], Catch::Contains("object 3 has no triangles"));
+    CHECK_THAT(part_of(Carving().of(built, {{kRoot, 1}}), kRoot), Catch::Contains(boolean));
+}
+
 TEST_CASE("3mf editor: a damaged model text is refused, or carved into a package that reads",
           "[formats][threemf][errors]") {
     const std::string sound = part_of(make_project(), kRoot);

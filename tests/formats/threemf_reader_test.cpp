@@ -327,6 +327,22 @@ TEST_CASE("3mf: hostile packages are refused within a second and 200 MB, by name
     }
 }
 
+TEST_CASE("3mf: a required extension is named in full, by its specification's name where it has one",
+          "[formats][threemf][errors]") {
+    const auto required = [](const std::string& space) {
+        return make_package(make_model(make_tetrahedron(1), "<item objectid=\"1\"/>",
+                                       "requiredextensions=\"b\" xmlns:b=\"" + space + "\""));
+    };
+    const std::string lattice = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
+    CHECK_THROWS_WITH(read(required(lattice)), Catch::Contains("extension \"b\" (beam lattice, \"" + lattice + "\")") &&
+                                                   Catch::Contains("--ignore-required"));
+    CHECK_THROWS_WITH(read(required("urn:odd")), Catch::Contains("extension \"b\" (\"urn:odd\")"));
+    const MeshFile let = read_threemf(required(lattice), "part.3mf", {}, {.ignore_required = true});
+    CHECK(let.mesh.triangles.size() == 4);
+    REQUIRE_FALSE(let.warnings.empty());
+    CHECK_THAT(let.warnings[0], Catch::Contains("beam lattice"));
+}
+
 TEST_CASE("3mf: damage at any byte is refused or harmless", "[formats][threemf][errors]") {
     const std::string good = make_package(make_model(make_tetrahedron(1, "name=\"x\""), "<item objectid=\"1\"/>"));
     for (std::size_t at = 0; at < good.size(); ++at) {

@@ -86,6 +86,17 @@ TEST_CASE("voxel data: scale, offset, transform and unit", "[formats][threemf]")
     CHECK(value_at(turned, 25.4 * Vec3(0.25, 0.75, 0.1)) == Approx(7000));
 }
 
+TEST_CASE("voxel data: names as drafts of the specification spell them", "[formats][threemf]") {
+    Volumetric drafted = cube();
+    drafted.function = "filter=\"nearest\" scale=\"2\" offset=\"-0.5\"";
+    CHECK(value_at(drafted, Vec3(0.25, 0.75, 0.25)) == Approx(2000 - 0.5 * 65535));
+    const std::string bytes = testing::patched(make_volumetric(drafted), "image3did", "image3dID");
+    CHECK(read_volumetric_threemf(bytes, "p").at(0).property("fw:solid", Vec3(0.75, 0.75, 0.25)).value() * 65535.0 ==
+          Approx(4000 - 0.5 * 65535));
+    drafted.function = "filter=\"nearest\" scale=\"2\" valuescale=\"1\"";
+    CHECK(value_at(drafted, Vec3(0.25, 0.75, 0.25)) == Approx(1000));
+}
+
 TEST_CASE("voxel data: channels of a sheet, and colours within [0, 1]", "[formats][threemf]") {
     Volumetric volumetric;
     volumetric.sheets = {write_png16(std::vector<std::uint16_t>{100, 200, 300, 400}, 1, 1, 4)};
