@@ -144,8 +144,9 @@ std::string make_volumetric(const Volumetric& volumetric) {
     }
     std::string object = make_tetrahedron(1);
     object.replace(object.find("<mesh>"), 6, "<mesh " + volumetric.mesh + ">");
-    resources += "</v:imagestack></v:image3d><v:functionfromimage3d id=\"3\" image3did=\"2\" " + volumetric.function +
-                 "/><v:volumedata id=\"4\">" + volumetric.volume + "</v:volumedata>" + object;
+    resources += "</v:imagestack></v:image3d><v:functionfromimage3d id=\"3\" " + volumetric.image_attribute +
+                 "=\"2\" " + volumetric.function + "/><v:volumedata id=\"4\">" + volumetric.volume + "</v:volumedata>" +
+                 object;
     return make_package(make_model(resources, "<item objectid=\"1\"/>", volumetric.model), parts);
 }
 

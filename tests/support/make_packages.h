@@ -49,9 +49,10 @@ std::string make_project(const ProjectGaps& gaps = {});
 
 /// A tetrahedron with voxel data, and what may be wrong with them.
 struct Volumetric {
-    std::vector<std::string> sheets;  ///< PNG; an empty one is missing from the package
-    std::string stack;                ///< attributes of the image stack, which must agree with the sheets
-    std::string function;             ///< further attributes of the function
+    std::vector<std::string> sheets;            ///< PNG; an empty one is missing from the package
+    std::string stack;                          ///< attributes of the image stack, which must agree with the sheets
+    std::string function;                       ///< further attributes of the function
+    std::string image_attribute = "image3did";  ///< by which the function names the stack
     /// Content of the volume data.
     std::string volume = "<v:property name=\"fw:solid\" required=\"true\" functionid=\"3\" channel=\"red\"/>";
     std::string mesh = "v:volumeid=\"4\"";  ///< attributes of the mesh
