@@ -16,4 +16,7 @@ for library in libcholmod libtbb libembree libxml2 libzip libpng; do
   dpkg-deb -f "$package" Depends | grep -q "$library" || { echo "the package does not ask for $library"; exit 1; }
 done
 [ -s "$work/root/usr/share/doc/fretwork/LICENSE" ] || { echo "the package holds no licence"; exit 1; }
+for file in package.xml LICENSE freecad/fretwork/init_gui.py freecad/fretwork/resources/icons/Fretwork.svg; do
+  [ -s "$work/root/usr/share/freecad/Mod/Fretwork/$file" ] || { echo "the package lacks the FreeCAD workbench's $file"; exit 1; }
+done
 echo "package: $(basename "$package") holds fretwork $version"

@@ -1,0 +1,202 @@
+"""Runs beside FreeCAD: the window stays alive, a newer request of an object replaces an older one, stopping is at once.
+
+The engine runs as a program of its own, so that nothing it does can take FreeCAD down.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Callable
+
+import FreeCAD as App
+from PySide import QtCore
+
+from .carved import FAILED
+from .engine.errors import Cancelled, EngineError, ProgramMissing
+from .engine.program import clean_environment
+from .engine.request import CarveRequest
+from .engine.run import Messages, finished
+from .preferences import engine
+from .results import Result, Share, Task
+from .status_bar import JobBar
+
+
+class Job(QtCore.QObject):
+    """One task, run by the program step after step."""
+
+    progressed = QtCore.Signal(str, float)  # stage, share of the whole
+    succeeded = QtCore.Signal(object)  # Result
+    failed = QtCore.Signal(object)  # EngineError
+
+    def __init__(self, program: str, task: Task, parent=None):
+        super().__init__(parent)
+        self.task = task
+        self._program = program
+        self._step = 0
+        self._stopped = False
+        self._process = QtCore.QProcess(self)
+        self._process.setProcessEnvironment(_environment())
+        self._process.readyReadStandardError.connect(self._read)
+        self._process.finished.connect(self._step_finished)
+        self._process.errorOccurred.connect(self._step_failed)
+
+    def start(self) -> None:
+        steps = self.task.steps
+        self._messages = Messages(Share(self._step, len(steps), self.progressed.emit))
+        self._process.start(self._program, steps[self._step])
+
+    def wait(self) -> Result:
+        """Lets the window live until the end, and gives the result. Raises EngineError."""
+        loop = QtCore.QEventLoop()
+        ended: list = []
+        for signal in (self.succeeded, self.failed):
+            signal.connect(lambda value: (ended.append(value), loop.quit()))
+        getattr(loop, "exec", loop.exec_)()
+        if isinstance(ended[0], EngineError):
+            raise ended[0]
+        return ended[0]
+
+    def stop(self) -> None:
+        """Ends the program, which leaves nothing behind. `failed` follows with Cancelled."""
+        self._stopped = True
+        self._process.terminate()
+
+    def _read(self) -> None:
+        self._messages.feed(bytes(self._process.readAllStandardError()))
+
+    def _step_failed(self, error) -> None:
+        # What has started tells how it ended by itself.
+        if error == QtCore.QProcess.FailedToStart:
+            self._fail(ProgramMissing(f"{self._program} could not be started: {self._process.errorString()}"))
+
+    def _step_finished(self, exit_code: int, _status) -> None:
+        self._read()
+        self._messages.finish()
+        try:
+            if self._stopped:
+                raise Cancelled("stopped")
+            finished(exit_code, self._messages)
+        except EngineError as error:
+            self._fail(error)
+            return
+        self._step += 1
+        if self._step < len(self.task.steps):
+            self.start()
+        else:
+            self.succeeded.emit(self.task.done())
+
+    def _fail(self, error: EngineError) -> None:
+        self.task.discard()
+        self.failed.emit(error)
+
+
+def _environment():
+    environment = QtCore.QProcessEnvironment()
+    for name, value in clean_environment().items():
+        environment.insert(name, value)
+    return environment
+
+
+class _Running:
+    """The job of one object, and whom it tells."""
+
+    def __init__(self, obj, job: Job):
+        self.document, self.name, self.job = obj.Document.Name, obj.Name, job
+
+    def object(self):
+        """The object, unless it or its document is gone by now."""
+        document = App.listDocuments().get(self.document)
+        return document.getObject(self.name) if document else None
+
+
+_running: dict[tuple[str, str], _Running] = {}
+
+
+class _Documents:
+    """What happens to documents while runs go on; FreeCAD calls it by the names of the functions."""
+
+    def slotDeletedDocument(self, document) -> None:
+        for running in list(_running.values()):
+            if running.document == document.Name:
+                running.job.stop()
+
+    def slotUndoDocument(self, document) -> None:
+        # A result that came after its step was closed is no part of the step.
+        QtCore.QTimer.singleShot(0, lambda: _refresh(document))
+
+    slotRedoDocument = slotUndoDocument
+
+
+def _refresh(document) -> None:
+    for obj in document.Objects:
+        refresh = getattr(getattr(obj, "Proxy", None), "refresh", None)
+        if refresh:
+            refresh(obj)
+            obj.purgeTouched()
+
+
+@lru_cache(maxsize=1)
+def watch_documents() -> _Documents:
+    """Begins to; once is enough."""
+    observer = _Documents()
+    App.addDocumentObserver(observer)
+    return observer
+
+
+def jobs() -> list[Job]:
+    """All that run."""
+    return [running.job for running in _running.values()]
+
+
+def job_of(obj) -> Job | None:
+    """The job that runs for an object."""
+    running = _running.get((obj.Document.Name, obj.Name))
+    return running.job if running else None
+
+
+def stop(obj) -> None:
+    """Ends the job of an object, if there is one."""
+    job = job_of(obj)
+    if job:
+        job.stop()
+
+
+def start(obj, request: CarveRequest, draft: bool) -> Job:
+    """Starts a run whose result goes into the object. One for the same request goes on; any other is replaced."""
+    before = job_of(obj)
+    if before:
+        if (before.task.key, before.task.draft) == (request.key(), draft):
+            return before
+        before.stop()
+    job = Job(engine().program, Task(request, draft))
+    watch_documents()
+    running = _Running(obj, job)
+    where = (running.document, running.name)
+    _running[where] = running
+
+    def ended(apply: Callable, value) -> None:
+        if _running.get(where) is running:
+            del _running[where]
+            target = running.object()
+            if target:
+                apply(target, value)
+        job.deleteLater()
+
+    job.succeeded.connect(lambda result: ended(_show, result))
+    job.failed.connect(lambda error: ended(_tell, error))
+    JobBar(obj.Label, job)
+    job.start()
+    return job
+
+
+def _show(obj, result: Result) -> None:
+    obj.Proxy.show(obj, result)
+    obj.purgeTouched()
+
+
+def _tell(obj, error: EngineError) -> None:
+    if not isinstance(error, Cancelled):
+        obj.State = FAILED
+        obj.Warnings = [str(error)]
+        App.Console.PrintError(f"{obj.Label}: {error}\n")
+    obj.purgeTouched()

@@ -1,0 +1,101 @@
+"""The commands of the menu and the tool bar."""
+
+from __future__ import annotations
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from .resources import icon
+from .translation import noop, translate
+
+
+def _resources(name: str, menu: str, tip: str) -> dict[str, str]:
+    return {"Pixmap": icon(name), "MenuText": menu, "ToolTip": tip}
+
+
+def _selected_carved() -> list:
+    from .carved import is_carved
+
+    return [obj for obj in Gui.Selection.getSelection() if is_carved(obj)]
+
+
+def _name(obj) -> str:
+    return f"App.getDocument({obj.Document.Name!r}).getObject({obj.Name!r})"
+
+
+def _do(document, label: str, *lines: str) -> None:
+    """Runs Python as one step that can be undone, and shows it in the console and the report view."""
+    document.openTransaction(label)
+    try:
+        for line in ("import freecad.fretwork as fw", *lines):
+            App.Console.PrintMessage(line + "\n")
+            Gui.doCommand(line)
+        document.commitTransaction()
+    except Exception as error:
+        document.abortTransaction()
+        App.Console.PrintError(f"{error}\n")
+
+
+class Carve:
+    """Carves what is selected."""
+
+    def GetResources(self):
+        return _resources("Carve", noop("Fretwork_Carve", "Carve"),
+                          noop("Fretwork_Carve", "Carve a pattern through the shell of the selected body or mesh; "
+                               "faces that are selected too are the only ones carved"))  # fmt: skip
+
+    def IsActive(self):
+        return bool(Gui.Selection.getSelectionEx())
+
+    def Activated(self):
+        from .selection import picked_source
+
+        picked = picked_source()
+        if not picked:
+            App.Console.PrintError(translate("Select a body, a shape or a mesh to carve") + "\n")
+            return
+        faces = f", faces={list(picked.faces)!r}" if picked.faces else ""
+        _do(picked.source.Document, translate("Carve"),
+            f"carved = fw.carve({_name(picked.source)}, pattern='cells'{faces}, draft=True, wait=False)")  # fmt: skip
+
+
+class Update:
+    """Carves the selected objects in full."""
+
+    def GetResources(self):
+        return _resources("Update", noop("Fretwork_Update", "Carve in full"),
+                          noop("Fretwork_Update", "Make the whole result for the present settings, beside FreeCAD"))
+
+    def IsActive(self):
+        return bool(_selected_carved())
+
+    def Activated(self):
+        for obj in _selected_carved():
+            _do(obj.Document, translate("Carve in full"), f"fw.update({_name(obj)}, wait=False)")
+
+
+class Stop:
+    """Ends the runs of the selected objects."""
+
+    def GetResources(self):
+        return _resources("Stop", noop("Fretwork_Stop", "Stop"),
+                          noop("Fretwork_Stop", "Stop the run of the selected object; it stays as it was"))
+
+    def IsActive(self):
+        from . import background
+
+        return any(background.job_of(obj) for obj in _selected_carved())
+
+    def Activated(self):
+        for obj in _selected_carved():
+            _do(obj.Document, translate("Stop"), f"fw.stop({_name(obj)})")
+
+
+COMMANDS = {"Fretwork_Carve": Carve, "Fretwork_Update": Update, "Fretwork_Stop": Stop}
+
+
+def add_commands() -> list[str]:
+    """Makes the commands known to FreeCAD and gives their names, in the order of the menu."""
+    for name, command in COMMANDS.items():
+        Gui.addCommand(name, command())
+    return list(COMMANDS)
