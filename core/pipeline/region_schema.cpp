@@ -328,7 +328,9 @@ std::span<const TableInfo> table_infos() {
         {"carve", "With any of these, only they are carved; all else stays solid.", {}, {}},
         {"loads",
          "A region that is pushed.",
-         {{"force_n", 3, "Total force over the region, N."}, {"pressure_mpa", 1, "Pressure into the surface, MPa."}},
+         {{"force_n", 3, "Total force over the region, N."},
+          {"pressure_mpa", 1, "Pressure into the surface, MPa."},
+          {"normal_force_n", 1, "The same as a force: pressure times the region's area, N."}},
          {{"case", 1, "Loads of one case act together; other cases are looked at on their own."}}},
         {"fixtures", "A region that cannot move.", {}, {{"case", 1, "The only load case it holds in."}}},
     };
@@ -354,8 +356,9 @@ void apply_table(Settings& settings, const SettingTable& table) {
         load.load_case = in.text("case").value_or(load.load_case);
         if (const auto force = in.numbers("force_n", 3)) load.force_n = vec(*force);
         if (const auto pressure = in.numbers("pressure_mpa", 1)) load.pressure_mpa = (*pressure)[0];
-        if (load.force_n.norm() <= 0 && load.pressure_mpa == 0)
-            throw InvalidSetting(in.where() + ": needs force_n or pressure_mpa");
+        if (const auto force = in.numbers("normal_force_n", 1)) load.normal_force_n = (*force)[0];
+        if (load.force_n.norm() <= 0 && load.pressure_mpa == 0 && load.normal_force_n == 0)
+            throw InvalidSetting(in.where() + ": needs force_n, pressure_mpa or normal_force_n");
         load.region = region;
         settings.loads.push_back(std::move(load));
     }
@@ -371,6 +374,7 @@ std::vector<SettingTable> tables_from(const Settings& settings) {
         table.entries.push_back({"case", load.load_case, {}});
         table.entries.push_back({"force_n", list(load.force_n), {}});
         table.entries.push_back({"pressure_mpa", load.pressure_mpa, {}});
+        table.entries.push_back({"normal_force_n", load.normal_force_n, {}});
         tables.push_back(std::move(table));
     }
     for (const FixtureOption& fixture : settings.fixtures) {

@@ -106,6 +106,10 @@ struct StructureOptions {
     LoadProfile profile = LoadProfile::kAuto;
     Vec3 gravity = -Vec3::UnitZ();
     double handling_force_n = 10.0;
+    std::optional<double> drop_factor;     ///< weights that act at once when the object lands
+    std::optional<double> drop_height_mm;  ///< or what it falls through, coming to rest over `drop_stop_mm`
+    double drop_stop_mm = 2.0;
+    bool remove_supports = false;  ///< each case also without each of its supports
     double fixed_share = 0.1;
     std::optional<double> pattern_radius_mm;
     int verify_rounds = 0;  ///< full analyses after carving, each but the last followed by strengthening; 0: none
@@ -138,6 +142,7 @@ struct LoadOption {
     std::string load_case = "load";  ///< loads of one case act together
     Vec3 force_n = Vec3::Zero();
     double pressure_mpa = 0.0;
+    double normal_force_n = 0.0;  ///< in all, into the surface along its normals
 };
 
 /// A region that holds.

@@ -67,5 +67,37 @@ TEST_CASE("strength check: loads act alike through the model and through the car
         }
 }
 
+TEST_CASE("strength check: a drop of n weights stresses n times as much, a taken support as if it were not there",
+          "[strength][loads]") {
+    const TriangleMesh plank = make_box(Vec3::Zero(), Vec3(40, 6, 3), {20, 3, 2});
+    Settings settings;
+    settings.structure.profile = LoadProfile::kGravity;
+    settings.structure.drop_factor = 250.0;
+    settings.structure.remove_supports = true;
+    const auto end = [](const char* name, double from) {
+        return FixtureOption{{name, BoxRegion{Vec3(from, -1, -1), Vec3(from + 2.0, 7, 4)}}, ""};
+    };
+    settings.fixtures = {end("left", -1.0), end("right", 39.0)};
+    const StrengthCheckSettings fine = settings_at(80);
+    const auto cases = [&](const Settings& of) {
+        return check_strength(plank, loads_of_source(plank, {}, of, 80), fine).report.cases;
+    };
+    const std::vector<StrengthCase> found = cases(settings);
+    REQUIRE(found.size() == 6);
+    for (const std::size_t weight : {0u, 2u, 3u}) {
+        const StrengthCase& dropped = found[weight == 0 ? 1 : weight + 2];
+        CHECK(dropped.stress_sum.max_pa == Approx(250.0 * found[weight].stress_sum.max_pa).epsilon(1e-4));
+        CHECK(dropped.max_displacement_mm == Approx(250.0 * found[weight].max_displacement_mm).epsilon(1e-4));
+    }
+    settings.structure.remove_supports = false;
+    settings.fixtures.erase(settings.fixtures.begin());
+    const std::vector<StrengthCase> right_alone = cases(settings);
+    CHECK(found[2].name == "gravity, without left");
+    CHECK(found[2].stress_sum.max_pa == right_alone[0].stress_sum.max_pa);
+    // A cantilever bends 48 times as far as a beam that is held at both ends: q L^4 / 8 against q L^4 / 384.
+    CHECK(found[2].max_displacement_mm > 30.0 * found[0].max_displacement_mm);
+    CHECK(found[2].max_displacement_mm < 60.0 * found[0].max_displacement_mm);
+}
+
 }  // namespace
 }  // namespace fretwork
