@@ -23,7 +23,9 @@ std::pair<VoxelIndex, VoxelIndex> voxels_in(const SurfaceVoxels& shell, const Vo
     return {static_cast<VoxelIndex>(low - shell.coords.begin()), static_cast<VoxelIndex>(high - shell.coords.begin())};
 }
 
-VoxelIndex facing(const SurfaceVoxels& shell, VoxelIndex v, double reach_mm) {
+}  // namespace
+
+VoxelIndex facing_voxel(const SurfaceVoxels& shell, VoxelIndex v, double reach_mm) {
     const Vec3 inward = -shell.normals[v].cast<double>();
     const double voxel_mm = shell.grid.voxel_mm;
     for (double way = 0.0; way <= reach_mm; way += voxel_mm) {
@@ -38,13 +40,11 @@ VoxelIndex facing(const SurfaceVoxels& shell, VoxelIndex v, double reach_mm) {
     return kNoVoxel;
 }
 
-}  // namespace
-
 std::vector<VoxelIndex> facing_voxels(const SurfaceVoxels& shell, double depth_mm) {
     std::vector<VoxelIndex> result(shell.size(), kNoVoxel);
     if (depth_mm <= 0.0) return result;
     parallel_for(shell.size(), 1024,
-                 [&](std::size_t v) { result[v] = facing(shell, static_cast<VoxelIndex>(v), 2.0 * depth_mm); });
+                 [&](std::size_t v) { result[v] = facing_voxel(shell, static_cast<VoxelIndex>(v), 2.0 * depth_mm); });
     return result;
 }
 

@@ -8,10 +8,13 @@
 
 namespace fretwork {
 
-/// Per voxel the nearest one straight inside it, on a sheet that faces away (normals more than 107 degrees apart),
-/// whose wall touches its own: not farther than twice `depth_mm`. kNoVoxel where there is none. A matter of the shell
-/// alone. Cost: about a tenth of a microsecond per voxel and voxel of depth; parallel. \param depth_mm  how far walls
-/// reach inside the surface; 0 or less: none meet
+/// The nearest voxel straight inside `v`, on a sheet that faces away (normals more than 107 degrees apart); kNoVoxel
+/// where there is none within `reach_mm`.
+VoxelIndex facing_voxel(const SurfaceVoxels& shell, VoxelIndex v, double reach_mm);
+
+/// Of each voxel the one it faces, if its wall touches its own: not farther than twice `depth_mm`. A matter of the
+/// shell alone. Cost: about a tenth of a microsecond per voxel and voxel of depth; parallel.
+/// \param depth_mm  how far walls reach inside the surface; 0 or less: none meet
 std::vector<VoxelIndex> facing_voxels(const SurfaceVoxels& shell, double depth_mm);
 
 /// Walls of two samples' regions that are one body.

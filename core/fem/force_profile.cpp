@@ -62,6 +62,12 @@ void push(const std::vector<std::vector<VoxelIndex>>& slabs, const Vec3& force_n
 
 }  // namespace
 
+std::string place_name(const Vec3& at_mm) {
+    std::string name = "(";
+    for (int axis = 0; axis < 3; ++axis) name += std::to_string(std::lround(at_mm[axis])) + (axis < 2 ? ", " : ") mm");
+    return name;
+}
+
 LoadCase gravity_case(const SurfaceVoxels& shell, const Vec3& direction, double fixed_share) {
     if (!(direction.norm() > 0.0) || !direction.allFinite())
         throw InvalidSetting("force profile: gravity has no direction; expected a vector other than zero");

@@ -31,6 +31,9 @@ struct ForceProfile {
     std::vector<LoadCase> cases;
 };
 
+/// "(3, -2, 40) mm": for the names of cases.
+std::string place_name(const Vec3& at_mm);
+
 /// The paper's standard setting: gravity along `direction`, the lowest `fixed_share` of the height held.
 LoadCase gravity_case(const SurfaceVoxels& shell, const Vec3& direction, double fixed_share = 0.1);
 

@@ -1,7 +1,6 @@
 #include "core/fem/supports.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -30,12 +29,6 @@ std::vector<Patch> patches_of(const SurfaceVoxels& shell, const std::vector<Voxe
     }
     for (Patch& patch : patches) patch.middle_mm /= static_cast<double>(patch.voxels.size());
     return patches;
-}
-
-std::string name_at(const Vec3& at_mm) {
-    std::string name = "foot at (";
-    for (int axis = 0; axis < 3; ++axis) name += std::to_string(std::lround(at_mm[axis])) + (axis < 2 ? ", " : ") mm");
-    return name;
 }
 
 /// What is held where all supports but one hold.
@@ -70,7 +63,7 @@ std::vector<Support> support_clusters(const SurfaceVoxels& shell, const std::vec
     };
     for (const Patch& patch : patches)
         if (counts(patch)) {
-            supports.push_back({name_at(patch.middle_mm), patch.voxels});
+            supports.push_back({"foot at " + place_name(patch.middle_mm), patch.voxels});
             middles_mm.push_back(patch.middle_mm);
         }
     for (const Patch& patch : patches) {

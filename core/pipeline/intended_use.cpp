@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/fem/grips.h"
 #include "core/fem/supports.h"
 #include "core/pipeline/keep_regions.h"
 
@@ -110,6 +111,18 @@ std::optional<double> drop_factor(const StructureOptions& structure) {
     return factor;
 }
 
+void add_grips(const SurfaceVoxels& shell, const StructureOptions& structure, std::vector<LoadCase>& cases) {
+    if (structure.grips == 0) return;
+    std::vector<LoadCase> grips =
+        grip_cases(shell, static_cast<std::size_t>(structure.grips), structure.handling_force_n);
+    if (grips.empty())
+        throw ConstraintsNotMet(
+            fmt::format("structure.grips = {}, but no two places of the surface can be pinched; "
+                        "leave it out",
+                        structure.grips));
+    std::ranges::move(grips, std::back_inserter(cases));
+}
+
 std::vector<LoadCase> cases_of_profile(const TriangleMesh& mesh, const SurfaceVoxels& shell, const Settings& settings,
                                        const LoadCase& base, const RunControl& run) {
     const StructureOptions& structure = settings.structure;
@@ -154,6 +167,7 @@ ForceProfile intended_use(const TriangleMesh& mesh, const SurfaceVoxels& shell, 
         cases.back().name = "drop";
         cases.back().acceleration_g *= *factor;
     }
+    add_grips(shell, structure, cases);
     const std::vector<Support> regions = fixed_regions(mesh, shell, settings, cases, run);
     const std::vector<Support> feet = support_clusters(shell, base.fixed);
     std::vector<HeldCase> held;

@@ -147,5 +147,22 @@ TEST_CASE("intended use: fixtures hold under every profile, in the cases that th
     CHECK_THROWS_WITH(use(settings), Catch::Contains("'shake'"));
 }
 
+TEST_CASE("intended use: grips stand beside the cases of the profile, held as they are", "[loads]") {
+    Settings settings = gravity();
+    settings.structure.grips = 6;
+    settings.structure.handling_force_n = 25.0;
+    const ForceProfile profile = use(settings);
+    REQUIRE(profile.cases.size() == 7);
+    CHECK(profile.cases[0].name == "gravity");
+    for (std::size_t c = 1; c < 7; ++c) {
+        CHECK(profile.cases[c].name.starts_with("grip at ("));
+        CHECK(profile.cases[c].fixed == profile.cases[0].fixed);
+        CHECK(profile.cases[c].loads.at(0).force_n.norm() == Approx(25.0));
+    }
+    const TriangleMesh sheet = make_square(40.0, 8);
+    CHECK_THROWS_WITH(intended_use(sheet, voxelize(sheet, {.resolution = 40}), settings),
+                      Catch::Contains("structure.grips = 6"));
+}
+
 }  // namespace
 }  // namespace fretwork
