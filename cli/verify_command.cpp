@@ -64,6 +64,22 @@ std::vector<std::string> mesh_faults(const MeshReport& mesh) {
     return faults;
 }
 
+/// Of several bodies the weakest stands first, and then what all of them came to.
+void add_verdict(const StrengthVerdict& strength, Facts& facts) {
+    if (strength.bodies.empty()) return;
+    const JudgedBody& weakest = weakest_of(strength.bodies);
+    if (!weakest.label.empty()) facts.add("strength.object", weakest.label);
+    add_strength_facts(weakest.check, weakest.faults, "strength.", facts);
+    if (weakest.label.empty()) return;
+    std::vector<Facts> objects;
+    for (const JudgedBody& body : strength.bodies) {
+        Facts& own = objects.emplace_back();
+        own.add("object", body.label);
+        add_strength_facts(body.check, body.faults, "", own);
+    }
+    facts.add("strength.objects", objects);
+}
+
 int verify_command(const VerifyOptions& options, Interrupt& interrupt) {
     const ThreadLimit threads(options.run.threads);
     const RunControl run = control_of(options.run, interrupt);
@@ -90,7 +106,7 @@ int verify_command(const VerifyOptions& options, Interrupt& interrupt) {
     facts.add("sound", faults.empty());
     add_mesh_facts(report, facts);
     add_printability_facts(print, printing, "printability.", facts);
-    if (strength.check) add_strength_facts(*strength.check, strength.faults, "strength.", facts);
+    add_verdict(strength, facts);
     fmt::print("{}", options.json ? facts_json(facts) : facts_lines(facts));
     if (!options.run.quiet) {
         for (const std::string& fault : faults) fmt::print(stderr, "fretwork: fault: {}\n", fault);

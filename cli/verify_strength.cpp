@@ -8,25 +8,27 @@
 
 #include "cli/carve_again.h"
 #include "cli/carve_model.h"
+#include "cli/carve_run.h"
 #include "cli/pattern_options.h"
 #include "core/base/error.h"
+#include "core/mesh/repair.h"
+#include "core/pipeline/object_settings.h"
 #include "core/pipeline/resolve_settings.h"
 #include "core/strength/strength_faults.h"
 #include "formats/run_source.h"
 #include "formats/spec_toml_reader.h"
-#include "formats/threemf_objects.h"
 
 namespace fretwork::cli {
 namespace {
 
 /// What is known of the making of a model.
 struct Known {
-    std::optional<Settings> settings;   ///< none: neither a spec nor a carved 3MF
-    std::optional<CarveTarget> source;  ///< that was carved; none: not known, or not the only one
+    std::optional<Settings> settings;  ///< none: neither a spec nor a carved 3MF
+    std::vector<CarveTarget> sources;  ///< that were carved; empty: not known
     std::vector<std::string> cautions;
 };
 
-/// The settings of a carve, and the object where the package keeps it and it is the only one.
+/// The settings of a carve, and the objects where the package keeps them.
 Known what_package_knows(const ModelBytes& package, const RunControl& run) {
     Known known;
     RunSource made = read_run_source(package.bytes, package.name);
@@ -37,8 +39,7 @@ Known what_package_knows(const ModelBytes& package, const RunControl& run) {
     }
     CarveRequest request = request_of_run(std::move(made), package.name, "", {});
     known.settings = request.settings;
-    CarveModel source = open_model(std::move(request.model), request.settings, run);
-    if (source.targets.size() == 1) known.source = std::move(source.targets.front());
+    known.sources = open_model(std::move(request.model), request.settings, run).targets;
     return known;
 }
 
@@ -50,19 +51,34 @@ Known what_is_known(const ModelBytes& model, const StrengthOptions& options, con
     named.pattern = options.spec;
     if (!names_spec(named.pattern))
         throw InvalidSetting(fmt::format("--spec {}: expected the path of a spec, such as loads.toml", options.spec));
-    // How the model was turned and scaled is not the new spec's to say.
+    // How the model was turned and scaled, and what of it was carved, is not the new spec's to say.
     const std::optional<InputOptions> input = known.settings ? std::optional(known.settings->input) : std::nullopt;
     known.settings = settings_of(named);
     if (input) known.settings->input = *input;
     return known;
 }
 
-/// The one carved object in its own coordinates, in which the spec speaks; nothing where there are several.
-std::optional<TriangleMesh> carved_object(const ModelBytes& model, const RunControl& run) {
-    if (model.format != MeshFormat::kThreemf) return std::nullopt;
-    ThreemfObjects found = read_threemf_objects(model.bytes, model.name, {.ignore_required = true}, run);
-    if (found.objects.size() != 1) return std::nullopt;
-    return std::move(found.objects.front().mesh);
+/// Bodies that are judged each on its own: the objects of a 3MF that are carved by these settings, in their own
+/// coordinates, in which a spec speaks; else all as one, without a key.
+std::vector<CarveTarget> bodies_of(const ModelBytes& model, const TriangleMesh& mesh,
+                                   const std::optional<Settings>& settings, const RunControl& run) {
+    if (!settings || model.format != MeshFormat::kThreemf) {
+        std::vector<CarveTarget> one(1);
+        one.front().mesh = mesh;
+        return one;
+    }
+    Settings reading = *settings;
+    reading.input.ignore_required = true;
+    std::vector<CarveTarget> bodies = open_model(model, reading, run).targets;
+    for (CarveTarget& body : bodies) body.mesh = repair_mesh(body.mesh, {}, run).mesh;
+    return bodies;
+}
+
+/// What a body was carved from; null: not known.
+const CarveTarget* source_of(const CarveTarget& body, std::size_t bodies, const std::vector<CarveTarget>& sources) {
+    if (bodies == 1 && sources.size() == 1) return &sources.front();
+    const auto found = std::ranges::find(sources, body.key, &CarveTarget::key);
+    return found != sources.end() && body.key ? &*found : nullptr;
 }
 
 /// Of a model that nobody has chosen voxels for: a solid body has many more than a carved one.
@@ -87,6 +103,51 @@ StrengthCheckSettings check_settings(const Settings& settings, const StrengthOpt
     return result;
 }
 
+/// What one body says.
+struct Judged {
+    std::string label;  ///< empty: the only one
+    std::optional<StrengthCheck> check;
+    std::vector<std::string> faults, cautions;
+};
+
+/// \param settings  of the whole file; none: it bears its own weight
+void judge(const CarveTarget& body, const CarveTarget* source, const std::optional<Settings>& settings,
+           const MeshReport& report, const StrengthOptions& options, const RunLimits& limits, const RunControl& run,
+           Judged& judged) {
+    const Settings own = settings ? settings_for_object(*settings, body.names()) : Settings{};
+    StrengthCheckSettings checked = check_settings(own, options, limits);
+    if (!settings && !options.resolution) checked.voxel_mm = unasked_voxel_mm(report);
+    const RunControl placing = run.slice(0.0, 0.1), rest = run.slice(0.1, 1.0);
+    std::optional<SurfaceLoads> loads;
+    if (settings && source != nullptr)
+        loads = loads_of_source(source->mesh, source->named_triangles, own, checked.resolution, placing);
+    else if (settings)
+        loads = loads_of_carved(body.mesh, own, checked.resolution, placing);
+    try {
+        judged.check = loads ? check_strength(body.mesh, *loads, checked, rest)
+                             : check_own_weight(body.mesh, own.structure.fixed_share, checked, rest);
+    } catch (const InvalidInput& error) {
+        judged.cautions.push_back(fmt::format("whether it holds is not known: {}", error.what()));
+        return;
+    }
+    keep_report_only(*judged.check);
+    judged.faults = strength_faults(judged.check->report);
+    judged.cautions = strength_cautions(judged.check->report);
+    if (judged.check->coarser)
+        judged.cautions.push_back(fmt::format("voxels are {:.3g} mm instead of {:.3g} mm to keep to the memory",
+                                              judged.check->report.voxel_mm, judged.check->asked_voxel_mm));
+}
+
+void add_to(StrengthVerdict& verdict, Judged judged) {
+    const auto take = [&](std::vector<std::string>& to, const std::vector<std::string>& from) {
+        for (const std::string& text : from)
+            to.push_back(judged.label.empty() ? text : fmt::format("{}: {}", judged.label, text));
+    };
+    take(verdict.faults, judged.faults);
+    take(verdict.cautions, judged.cautions);
+    if (judged.check) verdict.bodies.push_back({judged.label, std::move(*judged.check), std::move(judged.faults)});
+}
+
 }  // namespace
 
 void add_strength_flags(CLI::App& command, StrengthOptions& options) {
@@ -107,41 +168,33 @@ void add_strength_flags(CLI::App& command, StrengthOptions& options) {
         ->group(group);
 }
 
+const JudgedBody& weakest_of(const std::vector<JudgedBody>& bodies) {
+    const auto share = [](const JudgedBody& body) {
+        return body.check.report.least_factor / body.check.report.safety_factor;
+    };
+    return *std::ranges::min_element(bodies, {}, share);
+}
+
 StrengthVerdict verify_strength(const ModelBytes& model, const TriangleMesh& mesh, const MeshReport& report,
                                 const StrengthOptions& options, const RunLimits& limits, const RunControl& run) {
     StrengthVerdict verdict;
-    Known known = what_is_known(model, options, run.slice(0.0, 0.05));
-    verdict.cautions = std::move(known.cautions);
-    const Settings settings = known.settings.value_or(Settings{});
-    StrengthCheckSettings checked = check_settings(settings, options, limits);
-    if (!known.settings && !options.resolution) checked.voxel_mm = unasked_voxel_mm(report);
+    const Known known = what_is_known(model, options, run.slice(0.0, 0.05));
+    verdict.cautions = known.cautions;
     if (report.border_edges > 0) {
         verdict.cautions.push_back("whether it holds is not known: the surface is not closed");
         return verdict;
     }
-    const std::optional<TriangleMesh> object = known.settings ? carved_object(model, run) : std::nullopt;
-    const bool by_source = known.source && object;
-    std::optional<SurfaceLoads> loads;
-    if (by_source)
-        loads = loads_of_source(known.source->mesh, known.source->named_triangles, settings, checked.resolution,
-                                run.slice(0.05, 0.1));
-    else if (known.settings)
-        loads = loads_of_carved(mesh, settings, checked.resolution, run.slice(0.05, 0.1));
-    const TriangleMesh& judged = by_source ? *object : mesh;
-    try {
-        const RunControl rest = run.slice(0.1, 1.0);
-        verdict.check = loads ? check_strength(judged, *loads, checked, rest)
-                              : check_own_weight(judged, settings.structure.fixed_share, checked, rest);
-    } catch (const InvalidInput& error) {
-        verdict.cautions.push_back(fmt::format("whether it holds is not known: {}", error.what()));
-        return verdict;
+    const std::vector<CarveTarget> bodies = bodies_of(model, mesh, known.settings, run);
+    const RunControl judging = run.slice(0.05, 1.0);
+    const auto count = static_cast<double>(bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const CarveTarget& body = bodies[i];
+        const auto from = static_cast<double>(i);
+        Judged judged{bodies.size() > 1 ? label_of(body) : "", {}, {}, {}};
+        judge(body, source_of(body, bodies.size(), known.sources), known.settings, report, options, limits,
+              judging.slice(from / count, (from + 1.0) / count), judged);
+        add_to(verdict, std::move(judged));
     }
-    verdict.faults = strength_faults(verdict.check->report);
-    for (std::string& caution : strength_cautions(verdict.check->report))
-        verdict.cautions.push_back(std::move(caution));
-    if (verdict.check->coarser)
-        verdict.cautions.push_back(fmt::format("voxels are {:.3g} mm instead of {:.3g} mm to keep to the memory",
-                                               verdict.check->report.voxel_mm, verdict.check->asked_voxel_mm));
     return verdict;
 }
 

@@ -21,14 +21,25 @@ struct StrengthOptions {
 
 void add_strength_flags(CLI::App& command, StrengthOptions& options);
 
-struct StrengthVerdict {
-    std::optional<StrengthCheck> check;  ///< none: it could not be made, a caution says why
-    std::vector<std::string> faults, cautions;
+/// What was judged on its own.
+struct JudgedBody {
+    std::string label;    ///< as messages call it; empty: the only one
+    StrengthCheck check;  ///< its report alone
+    std::vector<std::string> faults;
 };
 
+struct StrengthVerdict {
+    std::vector<JudgedBody> bodies;             ///< fewer where a check could not be made, a caution says why
+    std::vector<std::string> faults, cautions;  ///< of all, with the labels
+};
+
+/// The body that is nearest to breaking, of those that were asked for. \param bodies  at least one
+const JudgedBody& weakest_of(const std::vector<JudgedBody>& bodies);
+
 /// Loads, supports and material come from the spec that is named, else from the one that a carved 3MF keeps; with
-/// neither, the model stands on its lowest tenth and bears its weight in three directions. Regions are looked for on
-/// the model that was carved where the package keeps it, else on `mesh`.
+/// neither, the model stands on its lowest tenth and bears its weight in three directions. Carved objects of a 3MF are
+/// judged one by one, each by its own settings (`[[object]]`). Regions are looked for on the model that was carved
+/// where the package keeps it, else on the carved surface.
 /// \param mesh  of the whole file, repaired
 StrengthVerdict verify_strength(const ModelBytes& model, const TriangleMesh& mesh, const MeshReport& report,
                                 const StrengthOptions& options, const RunLimits& limits, const RunControl& run);

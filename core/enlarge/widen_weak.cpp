@@ -1,7 +1,6 @@
 #include "core/enlarge/widen_weak.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/graph/pattern_width.h"
 

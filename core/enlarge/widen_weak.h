@@ -19,7 +19,8 @@ struct WidenSettings {
 /// becomes that much wider, twice as wide at most, and by 1.5 voxels on each side at least: less would be lost between
 /// voxels. Where a strand is weak along its length it grows along its length, and tapers off where the stress does.
 /// \param gain  one per voxel, stress over allowable stress; solid voxels above 1 are weak
-/// \return empty voxels to be made solid, ascending; none where all around the weak ones is solid
+/// Weak voxels with nothing empty within `most_voxels` are left as they are.
+/// \return empty voxels to be made solid, ascending
 /// Cost  a disc of at most `most_voxels` per weak voxel.
 std::vector<VoxelIndex> widen_weak(const SurfaceVoxels& shell, const GeodesicLinks& links, const SolidStates& solid,
                                    const std::vector<float>& gain, const WidenSettings& settings,

@@ -72,6 +72,12 @@ StrengthCheckSettings strength_check_settings(const Settings& settings, std::uin
     return check;
 }
 
+void keep_report_only(StrengthCheck& check) {
+    check.voxels = {};
+    check.report.worst_factor = {};
+    check.report.worst_stress_sum_pa = {};
+}
+
 StrengthCheck check_strength(const TriangleMesh& carved, const SurfaceLoads& loads,
                              const StrengthCheckSettings& settings, const RunControl& run) {
     return check(carved, settings, run,

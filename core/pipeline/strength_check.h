@@ -54,6 +54,9 @@ struct StrengthCheck {
     bool coarser = false;  ///< voxels are larger than was asked for, to keep to the memory
 };
 
+/// Lets go of what there is one of per voxel.
+void keep_report_only(StrengthCheck& check);
+
 /// Voxels of the asked size, or larger ones where those would take more than the memory allows.
 /// \throws  as make_voxel_model and analyze_strength; MemoryLimit where even 32 voxels are too many
 StrengthCheck check_strength(const TriangleMesh& carved, const SurfaceLoads& loads,

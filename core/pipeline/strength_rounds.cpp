@@ -63,9 +63,7 @@ class Rounds {
         if (rounds.size() == 1) result_.first = found;
         result_.on_shell = found;
         result_.record.check = std::move(check);
-        result_.record.check.voxels = {};
-        result_.record.check.report.worst_factor = {};
-        result_.record.check.report.worst_stress_sum_pa = {};
+        keep_report_only(result_.record.check);
         return found;
     }
 

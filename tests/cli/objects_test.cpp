@@ -1,6 +1,7 @@
 // 3MF in, 3MF out: which objects are carved, and that nothing else is touched.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -161,6 +162,65 @@ TEST_CASE("cli: [[object]] gives an object settings of its own", "[cli][threemf]
     const ProgramResult bad = run_program({"spec", "check", folder / "bad.toml"});
     CHECK(bad.exit_code == 1);
     CHECK(bad.err.find("bad.toml: line 3") != bad.err.npos);
+}
+
+TEST_CASE("cli: verify judges every object of a plate on its own", "[cli][threemf]") {
+    const TemporaryFolder folder;
+    // Two posts 60 mm apart; where the loads lie is said in the coordinates of each.
+    const TriangleMesh post = make_box(Vec3::Zero(), Vec3(4, 4, 40));
+    spit(folder / "posts.3mf",
+         make_package(
+             make_model(make_mesh_object(1, post, "name=\"firm\"") + make_mesh_object(2, post, "name=\"soft\""),
+                        "<item objectid=\"1\"/><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 60 0 0\"/>")));
+    spit(folder / "loads.toml",
+         "[structure]\nmaterial = \"PLA\"\n[[loads]]\nname = \"top\"\nshape = \"box\"\nmin_mm = [-1, -1, 38]\n"
+         "max_mm = [5, 5, 41]\nforce_n = [20, 0, 0]\n[[object]]\nmatch = \"soft\"\nstructure.material = \"PETG\"\n");
+    const ProgramResult run =
+        run_program({"verify", folder / "posts.3mf", "--spec", folder / "loads.toml", "--resolution", "80", "--json"});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    const Json strength = Json::parse(run.out)["strength"];
+    REQUIRE(strength["objects"].size() == 2);
+    const auto factor = [&](std::size_t i) { return strength["objects"][i]["factor_of_safety"].get<double>(); };
+    CHECK(strength["objects"][0]["object"] == "\"firm\"");
+    CHECK(strength["objects"][0]["cases"][0]["applied_n"][0].get<double>() == Approx(20.0));
+    CHECK(strength["objects"][0]["voxels"] == 8 * 8 * 80);
+    // The same stress, and 40 or 30 MPa to bear it.
+    CHECK(factor(0) == Approx(factor(1) * 40.0 / 30.0).epsilon(0.02));
+    CHECK(strength["object"] == "\"soft\"");
+    CHECK(strength["factor_of_safety"].get<double>() == factor(1));
+    CHECK(run.err.find("fault: \"soft\": breaks under") != run.err.npos);
+    CHECK(run.err.find("fault: \"firm\": breaks under") != run.err.npos);
+}
+
+TEST_CASE("cli: verify of a carved plate judges what was carved of it", "[cli][threemf]") {
+    const TemporaryFolder folder;
+    spit(folder / "in.3mf", three_boxes());
+    spit(folder / "s.toml",
+         "[exemplar]\npattern = \"cells\"\n[synthesis]\npreset = \"draft\"\n[shell]\nresolution = 32\n"
+         "[structure]\nmax_iterations = 1\nsamples = 60\nmaterial = \"ABS\"\n[[object]]\nmatch = \"S-2\"\n"
+         "structure.material = \"PLA\"\nstructure.gravity = [1, 0, 0]\n");
+    const ProgramResult carved = run_program(
+        {"carve", folder / "in.3mf", "--pattern", folder / "s.toml", "-o", folder / "out.3mf", "--objects", "lid,2"});
+    CAPTURE(carved.err);
+    REQUIRE(carved.exit_code == 0);
+    const ProgramResult run = run_program({"verify", folder / "out.3mf", "--json"});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    const Json strength = Json::parse(run.out)["strength"];
+    REQUIRE(strength["objects"].size() == 2);
+    const ThreemfObjects made = read_threemf_objects(slurp(folder / "out.3mf"), "out.3mf");
+    const auto check = [&](std::size_t i, const char* label, double density, int pulls_along) {
+        const Json& object = strength["objects"][i];
+        CHECK(object["object"] == label);
+        const double volume = report_mesh(made.objects[i].mesh, CountSelfIntersections::kNo).volume_mm3;
+        CHECK(object["volume_mm3"].get<double>() == Approx(volume).epsilon(0.15));
+        const double weight = object["weight_n"].get<double>();
+        CHECK(weight == Approx(object["volume_mm3"].get<double>() * density * 1e-9 * 9.81));
+        CHECK(std::abs(object["cases"][0]["applied_n"][pulls_along].get<double>()) == Approx(weight));
+    };
+    check(0, "\"lid\"", 1040.0, 2);
+    check(1, "object 2", 1240.0, 0);
 }
 
 TEST_CASE("cli: --check looks at every object", "[cli][threemf]") {
