@@ -44,6 +44,14 @@ FIGURES = [
     ("bunny-zebra", "bunny00.off", ["--up", "y", "--pattern", "zebra"], ["--azimuth", "30"]),
 ]
 
+# The bunny that lies on its chest, stands, and lies on its back: where its weight pulls, and the tenth that holds it. At
+# 100 mm it reaches from -50 to 50 along x.
+GRAVITIES = {
+    "left": ([-1, 0, 0], ([-60, -60, -60], [-40, 60, 60])),
+    "down": ([0, 0, -1], ([-60, -60, -60], [60, 60, -40])),
+    "right": ([1, 0, 0], ([40, -60, -60], [60, 60, 60])),
+}
+
 # The figure whose page is kept in examples/.
 PAGE = "bunny-cells"
 
@@ -120,10 +128,33 @@ class Gallery:
         run(self.build / "examples/sheet", sheet, 6, *pictures)
         self.publish(sheet, "patterns-vase")
 
-    def figure(self, name, model, carve, view):
+    def source(self, name, model):
+        """The model of a figure; none where it is not there."""
         source = self.models / model if self.models else None
-        if source is None or not source.exists():
-            print(f"skipped: {name}: {model} is not in the folder of models", file=sys.stderr)
+        if source is not None and source.exists():
+            return source
+        print(f"skipped: {name}: {model} is not in the folder of models", file=sys.stderr)
+        return None
+
+    def gravities(self, name):
+        """What is added to the same pattern when the weight pulls elsewhere (the paper's figure 17)."""
+        source = self.source(name, "bunny00.off")
+        if source is None:
+            return
+        made = []
+        for side, (gravity, (low, high)) in GRAVITIES.items():
+            spec = self.out / f"{name}-{side}.toml"
+            spec.write_text(f"[input]\nup = \"y\"\nsize_mm = 100\n[exemplar]\npattern = \"hooks\"\n"
+                            f"[structure]\nprofile = \"gravity\"\ngravity = {gravity}\n"
+                            f"[[fixtures]]\nname = \"below\"\nshape = \"box\"\nmin_mm = {low}\nmax_mm = {high}\n")
+            made.append(spec.with_suffix(".3mf"))
+            run(self.fretwork, "carve", source, "-q", "--pattern", spec, "--resolution", self.resolution,
+                "-o", made[-1])
+        self.render(made, "480", ["--colour", "bridges", "--azimuth", "0"], name)
+
+    def figure(self, name, model, carve, view):
+        source = self.source(name, model)
+        if source is None:
             return
         made, summary = self.out / (name + ".3mf"), self.out / (name + ".json")
         run(self.fretwork, "carve", source, "-q", "--size-mm", "100", *carve, "--resolution", self.resolution,
@@ -187,6 +218,8 @@ def main():
             gallery.example(name)
     if gallery.wanted("patterns-vase"):
         gallery.vases()
+    if gallery.wanted("bunny-gravities"):
+        gallery.gravities("bunny-gravities")
     for figure in FIGURES:
         if gallery.wanted(figure[0]):
             gallery.figure(*figure)
