@@ -9,14 +9,13 @@ from functools import lru_cache
 from typing import Callable
 
 import FreeCAD as App
-from PySide import QtCore
 
 from .carved import FAILED
-from .engine.errors import Cancelled, EngineError, ProgramMissing
-from .engine.program import clean_environment
+from .engine.errors import Cancelled, EngineError
 from .engine.request import CarveRequest
-from .engine.run import Messages, finished
 from .preferences import engine
+from .program_process import ProgramProcess
+from .qt import QtCore, run
 from .results import Result, Share, Task
 from .status_bar import JobBar
 
@@ -33,17 +32,19 @@ class Job(QtCore.QObject):
         self.task = task
         self._program = program
         self._step = 0
-        self._stopped = False
-        self._process = QtCore.QProcess(self)
-        self._process.setProcessEnvironment(_environment())
-        self._process.readyReadStandardError.connect(self._read)
-        self._process.finished.connect(self._step_finished)
-        self._process.errorOccurred.connect(self._step_failed)
 
     def start(self) -> None:
         steps = self.task.steps
-        self._messages = Messages(Share(self._step, len(steps), self.progressed.emit))
-        self._process.start(self._program, steps[self._step])
+        self._process = ProgramProcess(self._program, steps[self._step], self)
+        share = Share(self._step, len(steps), self.progressed.emit)
+        self._process.progressed.connect(lambda stage, fraction: share(stage, fraction))
+        self._process.succeeded.connect(self._step_done)
+        self._process.failed.connect(self._fail)
+        self._process.start()
+
+    def stop(self) -> None:
+        """Ends it. `failed` follows with Cancelled."""
+        self._process.stop()
 
     def wait(self) -> Result:
         """Lets the window live until the end, and gives the result. Raises EngineError."""
@@ -51,34 +52,12 @@ class Job(QtCore.QObject):
         ended: list = []
         for signal in (self.succeeded, self.failed):
             signal.connect(lambda value: (ended.append(value), loop.quit()))
-        getattr(loop, "exec", loop.exec_)()
+        run(loop)
         if isinstance(ended[0], EngineError):
             raise ended[0]
         return ended[0]
 
-    def stop(self) -> None:
-        """Ends the program, which leaves nothing behind. `failed` follows with Cancelled."""
-        self._stopped = True
-        self._process.terminate()
-
-    def _read(self) -> None:
-        self._messages.feed(bytes(self._process.readAllStandardError()))
-
-    def _step_failed(self, error) -> None:
-        # What has started tells how it ended by itself.
-        if error == QtCore.QProcess.FailedToStart:
-            self._fail(ProgramMissing(f"{self._program} could not be started: {self._process.errorString()}"))
-
-    def _step_finished(self, exit_code: int, _status) -> None:
-        self._read()
-        self._messages.finish()
-        try:
-            if self._stopped:
-                raise Cancelled("stopped")
-            finished(exit_code, self._messages)
-        except EngineError as error:
-            self._fail(error)
-            return
+    def _step_done(self) -> None:
         self._step += 1
         if self._step < len(self.task.steps):
             self.start()
@@ -88,13 +67,6 @@ class Job(QtCore.QObject):
     def _fail(self, error: EngineError) -> None:
         self.task.discard()
         self.failed.emit(error)
-
-
-def _environment():
-    environment = QtCore.QProcessEnvironment()
-    for name, value in clean_environment().items():
-        environment.insert(name, value)
-    return environment
 
 
 class _Running:
@@ -110,6 +82,9 @@ class _Running:
 
 
 _running: dict[tuple[str, str], _Running] = {}
+
+# Each is called as `listener(obj, job)` when a job begins; who shows its progress answers True.
+listeners: list[Callable[..., bool]] = []
 
 
 class _Documents:
@@ -184,8 +159,9 @@ def start(obj, request: CarveRequest, draft: bool) -> Job:
 
     job.succeeded.connect(lambda result: ended(_show, result))
     job.failed.connect(lambda error: ended(_tell, error))
-    JobBar(obj.Label, job)
     job.start()
+    if not any([listener(obj, job) for listener in listeners]):
+        JobBar(obj.Label, job)
     return job
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from PySide import QtCore
-
+from .qt import QtCore
 from .resources import icon
 
 
@@ -29,6 +28,28 @@ class CarvedView:
     def updateData(self, obj, name: str) -> None:
         if name in ("Mesh", "FaceColors", "Placement"):
             self._show_colors_soon(obj.ViewObject)
+
+    def doubleClicked(self, view) -> bool:
+        view.Document.setEdit(view.Object.Name)
+        return True
+
+    def setEdit(self, view, mode: int = 0) -> bool:
+        if mode != 0:
+            return None
+        import FreeCADGui as Gui
+
+        from .panel.carve_panel import CarvePanel
+
+        Gui.Control.showDialog(CarvePanel(view.Object))
+        return True
+
+    def unsetEdit(self, view, mode: int = 0) -> bool:
+        if mode != 0:
+            return None
+        import FreeCADGui as Gui
+
+        Gui.Control.closeDialog()
+        return True
 
     def onDelete(self, view, _names) -> bool:
         """With the carved object gone, its source is seen again."""

@@ -23,17 +23,24 @@ def _name(obj) -> str:
     return f"App.getDocument({obj.Document.Name!r}).getObject({obj.Name!r})"
 
 
-def _do(document, label: str, *lines: str) -> None:
-    """Runs Python as one step that can be undone, and shows it in the console and the report view."""
+def _run(*lines: str) -> None:
+    """Runs Python, and shows it in the console and the report view."""
+    for line in ("import freecad.fretwork as fw", *lines):
+        App.Console.PrintMessage(line + "\n")
+        Gui.doCommand(line)
+
+
+def _in_one_step(document, label: str, *lines: str, stays_open: bool = False) -> None:
+    """The same as one step that can be undone; what stays open is closed by the panel that follows."""
     document.openTransaction(label)
     try:
-        for line in ("import freecad.fretwork as fw", *lines):
-            App.Console.PrintMessage(line + "\n")
-            Gui.doCommand(line)
-        document.commitTransaction()
+        _run(*lines)
     except Exception as error:
         document.abortTransaction()
         App.Console.PrintError(f"{error}\n")
+        return
+    if not stays_open:
+        document.commitTransaction()
 
 
 class Carve:
@@ -55,8 +62,10 @@ class Carve:
             App.Console.PrintError(translate("Select a body, a shape or a mesh to carve") + "\n")
             return
         faces = f", faces={list(picked.faces)!r}" if picked.faces else ""
-        _do(picked.source.Document, translate("Carve"),
-            f"carved = fw.carve({_name(picked.source)}, pattern='cells'{faces}, draft=True, wait=False)")  # fmt: skip
+        document = picked.source.Document
+        _in_one_step(document, translate("Carve"),
+                     f"carved = fw.carve({_name(picked.source)}, pattern='cells'{faces}, draft=True, wait=False)",
+                     f"Gui.getDocument({document.Name!r}).setEdit(carved.Name)", stays_open=True)  # fmt: skip
 
 
 class Update:
@@ -71,7 +80,7 @@ class Update:
 
     def Activated(self):
         for obj in _selected_carved():
-            _do(obj.Document, translate("Carve in full"), f"fw.update({_name(obj)}, wait=False)")
+            _in_one_step(obj.Document, translate("Carve in full"), f"fw.update({_name(obj)}, wait=False)")
 
 
 class Stop:
@@ -88,7 +97,7 @@ class Stop:
 
     def Activated(self):
         for obj in _selected_carved():
-            _do(obj.Document, translate("Stop"), f"fw.stop({_name(obj)})")
+            _run(f"fw.stop({_name(obj)})")
 
 
 COMMANDS = {"Fretwork_Carve": Carve, "Fretwork_Update": Update, "Fretwork_Stop": Stop}

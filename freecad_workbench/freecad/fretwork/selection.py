@@ -25,6 +25,13 @@ def _source_of(obj):
     return obj
 
 
+def source_behind(obj, path: str):
+    """The source that an element belongs to, where `path` leads from an object to it, as in "Body.Pad.Face3"."""
+    inner = path.rsplit(".", 2)
+    found = obj.Document.getObject(inner[-2]) if len(inner) > 1 else None
+    return _source_of(found or obj)
+
+
 def picked_source() -> Picked | None:
     """The first selected object that can be carved, with its selected faces."""
     for selected in Gui.Selection.getSelectionEx():

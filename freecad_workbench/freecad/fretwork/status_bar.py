@@ -3,16 +3,10 @@
 from __future__ import annotations
 
 import FreeCADGui as Gui
-from PySide import QtCore, QtGui
 
+from .qt import QtCore, QtGui, QtWidgets
 from .resources import icon
 from .translation import translate
-
-try:
-    from PySide import QtWidgets
-except ImportError:
-    # FreeCAD up to 0.20 has the widgets among QtGui.
-    QtWidgets = QtGui
 
 
 class JobBar(QtWidgets.QWidget):

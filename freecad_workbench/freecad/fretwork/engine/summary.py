@@ -31,9 +31,11 @@ def summary_lines(report: Mapping[str, Any]) -> list[str]:
     if report.get("strength", {}).get("factor_of_safety"):
         lines.append(_strength(report["strength"]))
     print_facts = report.get("printability", {})
+    wall = f"wall {report['shell']['thickness_mm']:.2f} mm"
     if "material_mm3" in print_facts:
-        lines.append(f"{print_facts['material_mm3'] / 1000:.1f} cm³ of material, "
-                     f"wall {report['shell']['thickness_mm']:.2f} mm")  # fmt: skip
+        lines.append(f"{print_facts['material_mm3'] / 1000:.1f} cm³ of material, {wall}")
+    else:
+        lines.append(wall)
     lines.append(f"{report['seconds']['total']:.1f} s")
     return lines
 

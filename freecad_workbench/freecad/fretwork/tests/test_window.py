@@ -8,25 +8,127 @@ import FreeCADGui as Gui
 import freecad.fretwork as fw
 
 from .. import background
+from ..qt import QtCore, QtWidgets
 from .support import QUICK
-from .window import WindowTest, wait_until
+from .window import WindowTest, wait, wait_until
 
 
-class Commands(WindowTest):
-    def test_selected_faces_become_a_carved_object_beside_its_source(self):
-        box = self.shape()
-        self.select(box, "Face6", "Face2")
+class Panel(WindowTest):
+    def setUp(self):
+        super().setUp()
+        dock = Gui.getMainWindow().findChild(QtWidgets.QDockWidget, "Combo View")
+        if dock:
+            dock.show()
+            Gui.getMainWindow().resizeDocks([dock], [430], QtCore.Qt.Horizontal)
+        self.box = self.shape()
+
+    def tearDown(self):
+        Gui.Control.closeDialog()
+
+    def open(self, *faces: str):
+        """The panel of a new carved object."""
+        self.select(self.box, *faces)
         Gui.runCommand("Fretwork_Carve", 0)
         carved = self.document.Carved
-        self.assertEqual(carved.State, "not carved")
-        self.assertEqual(carved.CarveFaces, [(box, ("Face6", "Face2"))])
+        fw.change(carved, **QUICK)
+        carved.recompute()
         wait_until(lambda: carved.State == "draft")
-        self.assertFalse(box.ViewObject.Visibility)
+        return carved
+
+    def widget(self, name: str):
+        found = Gui.getMainWindow().findChild(QtWidgets.QWidget, name)
+        self.assertIsNotNone(found, name)
+        return found
+
+    def press(self, button) -> None:
+        """A standard button of the task panel."""
+        boxes = [box for box in Gui.getMainWindow().findChildren(QtWidgets.QDialogButtonBox)
+                 if box.button(button) and not box.isHidden()]  # fmt: skip
+        self.assertEqual(len(boxes), 1)
+        boxes[0].button(button).click()
+        wait(0.1)
+
+    def test_selected_faces_become_a_carved_object_and_cancel_takes_it_back(self):
+        carved = self.open("Face6", "Face2")
+        self.assertEqual(carved.CarveFaces, [(self.box, ("Face6", "Face2"))])
+        self.assertFalse(self.box.ViewObject.Visibility)
         self.show()
-        self.picture("carved-faces")
+        self.picture("panel")
+        self.press(QtWidgets.QDialogButtonBox.Cancel)
+        self.assertEqual([obj.Name for obj in self.document.Objects], ["Box"])
+        self.assertTrue(self.box.ViewObject.Visibility)
+        self.assertFalse(Gui.Control.activeDialog())
+
+    def test_a_change_in_the_panel_is_drafted_and_ok_makes_it_one_step_of_undo(self):
+        carved = self.open()
+        first = carved.ResultKey
+        patterns = self.widget("FretworkPatterns")
+        waves = patterns.findItems("waves", QtCore.Qt.MatchExactly)[0]
+        patterns.setCurrentItem(waves)
+        wait_until(lambda: carved.ResultKey != first and carved.State == "draft")
+        self.assertEqual(carved.ExemplarPattern, "waves")
+        wall = self.widget("FretworkShellThickness")
+        wall.setProperty("rawValue", 5.0)
+        wait_until(lambda: carved.Proxy.request(carved).key() == carved.ResultKey)
+        self.assertEqual(carved.ShellThickness.Value, 5.0)
+        self.assertIn("wall 5", self.widget("FretworkSummary").text())
+        self.press(QtWidgets.QDialogButtonBox.Ok)
+        self.assertEqual(carved.State, "draft")
         self.document.undo()
         self.assertEqual([obj.Name for obj in self.document.Objects], ["Box"])
-        self.assertTrue(box.ViewObject.Visibility)
+        self.document.redo()
+        self.assertEqual(self.document.Carved.ExemplarPattern, "waves")
+
+    def test_faces_are_picked_in_the_view(self):
+        carved = self.open()
+        self.widget("FretworkKeepFaces").click()
+        self.assertTrue(self.box.ViewObject.Visibility)
+        self.assertFalse(carved.ViewObject.Visibility)
+        for face in ("Face3", "Face6", "Face2", "Face6"):
+            Gui.Selection.addSelection(self.document.Name, self.box.Name, face)
+            wait(0.05)
+        self.show()
+        self.picture("picking")
+        self.assertEqual(carved.KeepFaces, [(self.box, ("Face3", "Face2"))])
+        self.widget("FretworkKeepFaces").click()
+        self.assertFalse(self.box.ViewObject.Visibility)
+        self.assertTrue(carved.ViewObject.Visibility)
+        self.press(QtWidgets.QDialogButtonBox.Ok)
+
+    def test_run_and_stop_in_the_panel(self):
+        carved = self.open()
+        self.widget("FretworkRun").click()
+        wait_until(lambda: carved.State == "carved")
+        wait(0.1)
+        self.assertIn("carved", self.widget("FretworkSummary").text())
+        self.assertFalse(self.widget("FretworkStop").isEnabled())
+        carved.ShellResolution = 256
+        self.widget("FretworkRun").click()
+        self.assertTrue(self.widget("FretworkStop").isEnabled())
+        wait(0.3)
+        self.widget("FretworkStop").click()
+        wait_until(lambda: not background.jobs(), 5)
+        self.assertEqual(carved.Proxy.request(carved).values["shell.resolution"], 256)
+        self.press(QtWidgets.QDialogButtonBox.Cancel)
+
+    def test_a_mistake_is_told_in_the_panel(self):
+        carved = self.open()
+        self.widget("FretworkShellThickness").setProperty("rawValue", 0.01)
+        wait_until(lambda: "use a thickness of" in self.widget("FretworkSummary").text())
+        self.picture("mistake")
+        self.assertEqual(carved.State, "failed")
+        self.press(QtWidgets.QDialogButtonBox.Cancel)
+
+    def test_edit_again_and_cancel_brings_back_what_was(self):
+        carved = self.open()
+        self.press(QtWidgets.QDialogButtonBox.Ok)
+        before = carved.ResultKey
+        Gui.ActiveDocument.setEdit(carved.Name)
+        self.widget("FretworkSynthesisScale").setProperty("rawValue", 2.0)
+        wait_until(lambda: carved.ResultKey != before)
+        self.press(QtWidgets.QDialogButtonBox.Cancel)
+        self.assertEqual(carved.SynthesisScale, 1.0)
+        wait_until(lambda: carved.ResultKey == before and carved.State == "draft", 5)
 
 
 class Runs(WindowTest):

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Callable
 
 import FreeCADGui as Gui
-from PySide import QtCore
 
+from ..qt import QtCore, run
 from .support import DocumentTest
 
 
@@ -18,7 +18,7 @@ def wait(seconds: float) -> None:
     """Lets the window live for a while."""
     loop = QtCore.QEventLoop()
     QtCore.QTimer.singleShot(int(1000 * seconds), loop.quit)
-    getattr(loop, "exec", loop.exec_)()
+    run(loop)
 
 
 def wait_until(condition: Callable[[], object], seconds: float = 60) -> None:
