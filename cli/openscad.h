@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/scratch_folder.h"
+#include "formats/scratch_folder.h"
 #include "core/base/run_control.h"
 
 namespace fretwork::cli {

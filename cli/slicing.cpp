@@ -8,7 +8,7 @@
 
 #include "cli/child_process.h"
 #include "cli/files.h"
-#include "cli/scratch_folder.h"
+#include "formats/scratch_folder.h"
 #include "core/base/error.h"
 #include "formats/cura_definition.h"
 #include "formats/gcode_reader.h"

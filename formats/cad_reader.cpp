@@ -14,18 +14,20 @@
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
-#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <sstream>
 #include <string>
 
 #include "core/base/error.h"
 #include "core/base/float_rounding.h"
+#include "formats/atomic_write.h"
+#include "formats/cad_sewing.h"
 #include "formats/parse_error.h"
+#include "formats/scratch_folder.h"
 #include "formats/weld_equal.h"
 
 namespace fretwork {
@@ -58,8 +60,12 @@ TopoDS_Shape read_shape(std::string_view bytes, CadFormat format) {
         STEPControl_Reader reader;
         return reader.ReadStream("memory", stream) == IFSelect_RetDone ? transferred(reader) : TopoDS_Shape();
     }
+    // OpenCASCADE reads IGES from files alone.
+    const ScratchFolder folder;
+    const std::string path = folder / "model.igs";
+    atomic_write(path, bytes);
     IGESControl_Reader reader;
-    return reader.ReadStream("memory", stream) == IFSelect_RetDone ? transferred(reader) : TopoDS_Shape();
+    return reader.ReadFile(path.c_str()) == IFSelect_RetDone ? transferred(reader) : TopoDS_Shape();
 }
 
 double longest_side(const TopoDS_Shape& shape) {
@@ -80,11 +86,12 @@ void break_into_triangles(const TopoDS_Shape& shape, const CadMeshing& meshing) 
     BRepMesh_IncrementalMesh(shape, parameters);
 }
 
+constexpr double kNothing = 1e-12;  // of the longest side
+
 class FaceCollector {
   public:
-    FaceCollector(const TopoDS_Shape& shape, std::string_view source) : source_(source), welder_(1 << 16) {
-        TopExp::MapShapes(shape, TopAbs_FACE, numbers_);
-    }
+    FaceCollector(const SewnShape& sewn, std::string_view source)
+        : source_(source), welder_(1 << 16), numbers_(sewn.faces), nothing_(kNothing * longest_side(sewn.shape)) {}
 
     void add_faces(const TopoDS_Shape& within, TopAbs_ShapeEnum but_not_in = TopAbs_SHAPE) {
         for (TopExp_Explorer face(within, TopAbs_FACE, but_not_in); face.More(); face.Next())
@@ -131,9 +138,12 @@ class FaceCollector {
             {"Face" + std::to_string(number), first, static_cast<std::uint32_t>(file_.mesh.triangles.size()) - first});
     }
 
-    /// Two faces may differ in the last bits of the points on their common edge; rounded to floats they agree.
+    /// Two faces may differ in the last bits of the points on their common edge; rounded to floats they agree, but for
+    /// what is meant to be 0.
     Vec3 placed(const gp_Pnt& p) const {
-        const Vec3 rounded = rounded_to_float(Vec3(p.X(), p.Y(), p.Z()));
+        Vec3 rounded = rounded_to_float(Vec3(p.X(), p.Y(), p.Z()));
+        for (double& x : rounded)
+            if (std::abs(x) < nothing_) x = 0.0;
         if (!(rounded.cwiseAbs().maxCoeff() <= kMaxCoordinate))
             fail_parse(source_, "face " + std::to_string(faces_), "a coordinate that is not finite or over 1e9",
                        "a smaller one");
@@ -143,12 +153,14 @@ class FaceCollector {
     std::string_view source_;
     EqualPointWelder welder_;
     MeshFile file_;
-    TopTools_IndexedMapOfShape numbers_;
+    const TopTools_IndexedMapOfShape& numbers_;
+    double nothing_;         ///< smaller coordinates are 0
     std::size_t faces_ = 0;  ///< number of the one in hand
 };
 
-MeshFile collect(const TopoDS_Shape& shape, std::string_view source, const RunControl& run) {
-    FaceCollector collector(shape, source);
+MeshFile collect(const SewnShape& sewn, std::string_view source, const RunControl& run) {
+    const TopoDS_Shape& shape = sewn.shape;
+    FaceCollector collector(sewn, source);
     int solids = 0;
     for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next()) {
         run.throw_if_stopped();
@@ -176,9 +188,11 @@ MeshFile read_cad(std::string_view bytes, CadFormat format, std::string_view sou
         if (shape.IsNull())
             fail_parse(source, place_of_byte(0), in_quotes(bytes.substr(0, 40)), "a readable CAD model");
         run.throw_if_stopped();
-        break_into_triangles(shape, meshing);
+        const SewnShape sewn = sew_loose_faces(shape, longest_side(shape));
         run.throw_if_stopped();
-        MeshFile file = collect(shape, source, run);
+        break_into_triangles(sewn.shape, meshing);
+        run.throw_if_stopped();
+        MeshFile file = collect(sewn, source, run);
         if (file.mesh.triangles.empty()) fail_parse(source, place_of_byte(0), "no face", "at least one");
         return file;
     } catch (const Standard_Failure& failure) {

@@ -62,7 +62,11 @@ Eigen::Affine3d ThreemfValues::transform(std::string_view text) const {
     Eigen::Affine3d transform = Eigen::Affine3d::Identity();
     TextScanner words(text, "", {.comment = 0});
     for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 3; ++column) transform.matrix()(column, row) = number(words.word(), "transform");
+        for (int column = 0; column < 3; ++column) {
+            const std::string_view word = words.word();
+            if (word.empty()) xml_.fail("transform " + in_quotes(text), "twelve numbers");
+            transform.matrix()(column, row) = number(word, "transform");
+        }
     if (!words.word().empty()) xml_.fail("transform " + in_quotes(text), "twelve numbers");
     const double size = transform.linear().norm();
     if (!(std::abs(transform.linear().determinant()) > 1e-12 * size * size * size))

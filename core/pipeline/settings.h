@@ -104,7 +104,7 @@ struct StructureOptions {
     std::optional<double> density_kg_m3;
     std::optional<double> strength_mpa;
     LoadProfile profile = LoadProfile::kAuto;
-    Vec3 gravity = -Vec3::UnitZ();
+    Vec3 gravity = Vec3(0.0, 0.0, -1.0);
     double handling_force_n = 10.0;
     std::optional<double> drop_factor;     ///< weights that act at once when the object lands
     std::optional<double> drop_height_mm;  ///< or what it falls through, coming to rest over `drop_stop_mm`

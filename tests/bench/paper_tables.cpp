@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "child_process.h"
-#include "cli/scratch_folder.h"
+#include "formats/scratch_folder.h"
 #include "formats/read_file.h"
 #include "markdown.h"
 
@@ -107,7 +107,7 @@ class Runner {
 
   private:
     const Options& options_;
-    cli::ScratchFolder scratch_;
+    ScratchFolder scratch_;
 };
 
 std::string seconds_text(const std::optional<double>& s) {

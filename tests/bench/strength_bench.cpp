@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "child_process.h"
-#include "cli/scratch_folder.h"
+#include "formats/scratch_folder.h"
 #include "core/fem/beam_model.h"
 #include "core/fem/beam_widths.h"
 #include "core/graph/connect_samples.h"
@@ -62,7 +62,7 @@ double seconds_since(Clock::time_point start) {
 
 TriangleMesh mesh_of(const Options& options, const Row& row) {
     if (!row.file.ends_with(".awk")) return read_mesh(fs::path(options.data) / "meshes" / row.file).mesh;
-    const cli::ScratchFolder scratch;
+    const ScratchFolder scratch;
     const fs::path off = scratch / (row.name + ".off");
     const std::string command =
         fmt::format("awk -f '{}/examples/models/{}' > '{}'", FRETWORK_REPOSITORY, row.file, off.string());

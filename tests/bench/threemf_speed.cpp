@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "child_process.h"
-#include "cli/scratch_folder.h"
+#include "formats/scratch_folder.h"
 #include "core/pipeline/memory_use.h"
 #include "formats/carved_threemf_writer.h"
 #include "formats/mesh_file.h"
@@ -186,7 +186,7 @@ class Jobs {
     static constexpr const char* kPrusaSlicer = "/usr/bin/prusa-slicer";
 
     const Options& options_;
-    cli::ScratchFolder scratch_;
+    ScratchFolder scratch_;
 };
 
 enum class Direction { kWrite, kRead };

@@ -11,37 +11,16 @@
 
 #include "core/base/error.h"
 #include "formats/read_file.h"
+#include "formats/scratch_folder.h"
 
 namespace fretwork {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own, gone at the end.
-class ScratchFolder {
-  public:
-    ScratchFolder() {
-        std::string name = (fs::temp_directory_path() / "fretwork_test_XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw FileError(name);
-        path_ = name;
-    }
-    ~ScratchFolder() {
-        std::error_code ignored;
-        fs::permissions(path_, fs::perms::owner_all, ignored);
-        fs::remove_all(path_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-    [[nodiscard]] fs::path operator/(const std::string& name) const { return path_ / name; }
-    [[nodiscard]] const fs::path& path() const { return path_; }
-    [[nodiscard]] std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(path_), {}));
-    }
-
-  private:
-    fs::path path_;
-};
+std::size_t files_in(const ScratchFolder& folder) {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder.path()), {}));
+}
 
 TEST_CASE("atomic write: new and replaced files hold exactly the bytes", "[formats]") {
     const ScratchFolder folder;
@@ -52,7 +31,7 @@ TEST_CASE("atomic write: new and replaced files hold exactly the bytes", "[forma
     CHECK(read_file(folder / "out.stl") == "shorter");
     atomic_write(folder / "out.stl", "");
     CHECK(read_file(folder / "out.stl").empty());
-    CHECK(folder.files() == 1);
+    CHECK(files_in(folder) == 1);
 }
 
 TEST_CASE("atomic write: permissions are those of an ordinary file, or of the one replaced", "[formats]") {
@@ -102,7 +81,7 @@ TEST_CASE("atomic write: on failure the target is untouched and nothing is left 
         std::signal(SIGXFSZ, previous);
     }
     CHECK(read_file(folder / "kept") == "precious");
-    CHECK(folder.files() == 1);
+    CHECK(files_in(folder) == 1);
 }
 
 TEST_CASE("same_file: sees through spelling and links", "[formats]") {

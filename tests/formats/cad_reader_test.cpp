@@ -1,28 +1,33 @@
 // CAD models in: closed, outward and as large as they are drawn.
 #include "formats/cad_reader.h"
 
-#include <unistd.h>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_Copy.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
 #include <Bnd_Box.hxx>
+#include <IGESControl_Writer.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS_Compound.hxx>
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <filesystem>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/mesh/mesh_report.h"
 #include "formats/mesh_file.h"
 #include "formats/part_facts.h"
 #include "formats/read_file.h"
+#include "formats/scratch_folder.h"
 
 namespace fretwork {
 namespace {
@@ -43,20 +48,39 @@ std::string brep_of(const TopoDS_Shape& shape) {
 }
 
 std::string step_of(const TopoDS_Shape& shape) {
-    const auto path = std::filesystem::temp_directory_path() / ("fretwork_" + std::to_string(::getpid()) + ".step");
+    const ScratchFolder folder;
     STEPControl_Writer writer;
     writer.Transfer(shape, STEPControl_AsIs);
-    REQUIRE(writer.Write(path.c_str()) == IFSelect_RetDone);
-    std::string bytes = read_file(path);
-    std::filesystem::remove(path);
-    return bytes;
+    REQUIRE(writer.Write((folder / "model.step").c_str()) == IFSelect_RetDone);
+    return read_file(folder / "model.step");
+}
+
+std::string iges_of(const TopoDS_Shape& shape) {
+    const ScratchFolder folder;
+    IGESControl_Writer writer;  // faces, each with edges of its own
+    REQUIRE(writer.AddShape(shape));
+    REQUIRE(writer.Write((folder / "model.igs").c_str()));
+    return read_file(folder / "model.igs");
+}
+
+/// The faces of a shape without what holds them together, each inside out.
+TopoDS_Shape loose_faces_of(const TopoDS_Shape& shape) {
+    TopoDS_Compound loose;
+    const BRep_Builder builder;
+    builder.MakeCompound(loose);
+    for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
+        builder.Add(loose, BRepBuilderAPI_Copy(face.Current()).Shape().Reversed());
+    return loose;
 }
 
 TEST_CASE("cad: a solid comes out closed, outward and of its volume", "[formats][cad]") {
     const double expected = 20 * 30 * 5 - kPi * 16 * 5;
     const MeshFile brep = read_cad(brep_of(plate()), CadFormat::kBrep, "plate.brep");
     const MeshFile step = read_cad(step_of(plate()), CadFormat::kStep, "plate.step");
-    for (const MeshFile* file : {&brep, &step}) {
+    const MeshFile iges = read_cad(iges_of(plate()), CadFormat::kIges, "plate.igs");
+    // Faces that only lie beside each other are one body all the same.
+    const MeshFile loose = read_cad(brep_of(loose_faces_of(plate())), CadFormat::kBrep, "loose.brep");
+    for (const MeshFile* file : {&brep, &step, &iges, &loose}) {
         const MeshReport report = report_mesh(file->mesh);
         CHECK(report.closed_manifold());
         CHECK(report.components == 1);
@@ -66,7 +90,23 @@ TEST_CASE("cad: a solid comes out closed, outward and of its volume", "[formats]
         CHECK(report.volume_mm3 <= expected + kPi * 16 * 5 * 0.04 / 6);
         CHECK(report.max_mm == Vec3(20, 30, 5));
         REQUIRE(file->parts.size() == 1);
+        CHECK(file->parts[0].name == "solid 1");
     }
+}
+
+TEST_CASE("cad: loose faces that meet nothing stay as they are", "[formats][cad]") {
+    TopoDS_Compound all;
+    const BRep_Builder builder;
+    builder.MakeCompound(all);
+    builder.Add(all, plate());
+    const TopoDS_Shape far = BRepPrimAPI_MakeBox(gp_Pnt(50, 0, 0), 8.0, 8.0, 8.0).Shape();
+    builder.Add(all, TopExp_Explorer(loose_faces_of(far), TopAbs_FACE).Current());
+    const MeshFile file = read_cad(brep_of(all), CadFormat::kBrep, "both.brep");
+    REQUIRE(file.parts.size() == 2);
+    CHECK(file.parts[1].name == "loose faces");
+    CHECK(file.parts[1].triangle_count == 2);
+    CHECK(report_mesh(file.mesh).border_edges == 4);
+    CHECK(file.faces.back().name == "Face8");
 }
 
 TEST_CASE("cad: a finer deviation comes closer to a sphere", "[formats][cad]") {
@@ -114,7 +154,11 @@ TEST_CASE("cad: a face is told by its area, centre and normal", "[formats][cad][
 
 TEST_CASE("cad: faces keep the numbers of the shape's own order", "[formats][cad]") {
     const TopoDS_Shape shape = plate();
-    const MeshFile file = read_cad(brep_of(shape), CadFormat::kBrep, "plate.brep");
+    const auto [what, file] = GENERATE_COPY(
+        std::pair("solid", read_cad(brep_of(shape), CadFormat::kBrep, "plate.brep")),
+        std::pair("loose faces", read_cad(brep_of(loose_faces_of(shape)), CadFormat::kBrep, "loose.brep")),
+        std::pair("IGES", read_cad(iges_of(shape), CadFormat::kIges, "plate.igs")));
+    CAPTURE(what);
     REQUIRE(file.faces.size() == 7);
     TopTools_IndexedMapOfShape faces;
     TopExp::MapShapes(shape, TopAbs_FACE, faces);

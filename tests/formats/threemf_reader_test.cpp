@@ -271,7 +271,7 @@ std::vector<Hostile> hostile_packages() {
         {"empty build", make_package(make_model(make_tetrahedron(1), "")), "empty build"},
         {"singular", with_transform("1 0 0 0 1 0 0 0 0 0 0 0"), "singular"},
         {"nan transform", with_transform("nan 0 0 0 1 0 0 0 1 0 0 0"), "\"nan\""},
-        {"short transform", with_transform("1 0 0 0 1 0 0 0 1 0 0"), "transform"},
+        {"short transform", with_transform("1 0 0 0 1 0 0 0 1 0 0"), "twelve numbers"},
         {"unknown required extension",
          make_package(
              make_model(make_tetrahedron(1), item, "requiredextensions=\"z\" xmlns:z=\"http://example.com/unknown\"")),

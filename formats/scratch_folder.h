@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace fretwork::cli {
+namespace fretwork {
 
 class ScratchFolder {
   public:
@@ -23,4 +23,4 @@ class ScratchFolder {
     std::filesystem::path path_;
 };
 
-}  // namespace fretwork::cli
+}  // namespace fretwork

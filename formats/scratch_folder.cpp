@@ -1,4 +1,4 @@
-#include "cli/scratch_folder.h"
+#include "formats/scratch_folder.h"
 
 #include <stdlib.h>
 
@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace fretwork::cli {
+namespace fretwork {
 
 namespace fs = std::filesystem;
 
@@ -21,4 +21,4 @@ ScratchFolder::~ScratchFolder() {
     fs::remove_all(path_, none);
 }
 
-}  // namespace fretwork::cli
+}  // namespace fretwork
