@@ -20,10 +20,11 @@ if FreeCAD:
     FreeCAD.__unit_test__ += [
         f"freecad.fretwork.tests.test_{subject}" for subject in ("engine", "settings", "carved", "window")
     ]
+    FreeCAD.addExportType("3MF carved by Fretwork (*.3mf)", "freecad.fretwork.exchange")
 
 
 # What scripts use. It lies in `api`, which is imported when one of these is first asked for.
-_API = ("carve", "change", "patterns", "stop", "update")
+_API = ("carve", "change", "export", "open_in_slicer", "patterns", "stop", "update")
 
 
 def __getattr__(name: str):

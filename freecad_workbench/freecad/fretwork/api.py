@@ -9,9 +9,13 @@ import FreeCAD as App
 
 from .carved import Carved, properties_of_settings
 from .engine.errors import BadSettings
+from .packages import export, open_in_slicer
 from .preferences import engine
 from .results import make, remembered
 from .setting_properties import PATTERN, PICTURES, SettingProperty
+
+__all__ = ["carve", "change", "export", "open_in_slicer", "patterns", "stop", "update"]
+
 
 def carve(
     source,

@@ -30,6 +30,14 @@ def _run(*lines: str) -> None:
         Gui.doCommand(line)
 
 
+def _try(line: str) -> None:
+    """The same; what goes wrong is said in the report view."""
+    try:
+        _run(line)
+    except Exception as error:
+        App.Console.PrintError(f"{error}\n")
+
+
 def _in_one_step(document, label: str, *lines: str, stays_open: bool = False) -> None:
     """The same as one step that can be undone; what stays open is closed by the panel that follows."""
     document.openTransaction(label)
@@ -100,7 +108,49 @@ class Stop:
             _run(f"fw.stop({_name(obj)})")
 
 
-COMMANDS = {"Fretwork_Carve": Carve, "Fretwork_Update": Update, "Fretwork_Stop": Stop}
+class Export:
+    """Writes the 3MF of the selected objects."""
+
+    def GetResources(self):
+        return _resources("Export", noop("Fretwork_Export", "Export 3MF..."),
+                          noop("Fretwork_Export", "Write the carved objects as 3MF, with colours, voxel data and settings"))  # fmt: skip
+
+    def IsActive(self):
+        return bool(_selected_carved())
+
+    def Activated(self):
+        from .qt import QtWidgets
+
+        objects = _selected_carved()
+        path, _ = QtWidgets.QFileDialog.getSaveFileName(
+            Gui.getMainWindow(), translate("Export 3MF"), f"{objects[0].Label}.3mf", "3MF (*.3mf)"
+        )
+        if path:
+            _try(f"fw.export([{', '.join(map(_name, objects))}], {path!r})")
+
+
+class OpenInSlicer:
+    """Hands the selected objects to a slicer."""
+
+    def GetResources(self):
+        return _resources("Slicer", noop("Fretwork_Slicer", "Open in slicer"),
+                          noop("Fretwork_Slicer", "Open the carved objects in PrusaSlicer, OrcaSlicer, Bambu Studio or "
+                               "Cura"))  # fmt: skip
+
+    def IsActive(self):
+        return bool(_selected_carved())
+
+    def Activated(self):
+        _try(f"fw.open_in_slicer([{', '.join(map(_name, _selected_carved()))}])")
+
+
+COMMANDS = {
+    "Fretwork_Carve": Carve,
+    "Fretwork_Update": Update,
+    "Fretwork_Stop": Stop,
+    "Fretwork_Export": Export,
+    "Fretwork_Slicer": OpenInSlicer,
+}
 
 
 def add_commands() -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import FreeCADGui as Gui
 
-from .resources import icon
+from .resources import FOLDER, icon
 from .translation import noop
 
 
@@ -21,6 +21,9 @@ class FretworkWorkbench(Gui.Workbench):
         names = add_commands()
         self.appendToolbar("Fretwork", names)
         self.appendMenu("Fretwork", names)
+        # The page's picture has to have this name.
+        Gui.addIcon("preferences-fretwork", icon("Fretwork"))
+        Gui.addPreferencePage(str(FOLDER / "preferences.ui"), "Fretwork")
 
     def GetClassName(self):
         return "Gui::PythonWorkbench"

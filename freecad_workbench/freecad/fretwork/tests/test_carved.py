@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
+import importlib
 import json
 import subprocess
+import time
+from pathlib import Path
 
 import FreeCAD as App
 import Mesh
@@ -12,7 +16,7 @@ import Part
 import freecad.fretwork as fw
 
 from ..carved import is_carved
-from ..engine.errors import BadInput, BadSettings, CannotBeMet
+from ..engine.errors import BadInput, BadSettings, CannotBeMet, EngineError
 from ..mesh_files import turn_of
 from ..preferences import engine
 from ..source import local_shape, model_of, same_placement
@@ -283,3 +287,56 @@ def _freecad(script, **environment: str) -> str:
     process = subprocess.run(["freecadcmd", str(script)], env={**os.environ, **environment}, stdin=subprocess.DEVNULL,
                              capture_output=True, text=True, timeout=60)  # fmt: skip
     return process.stdout + process.stderr
+
+
+class Packages(DocumentTest):
+    def test_only_a_full_result_of_the_present_settings_is_exported(self):
+        carved = fw.carve(self.shape(), pattern="hexagons", draft=True, **QUICK)
+        path = self.folder / "out.3mf"
+        with self.assertRaisesRegex(BadSettings, "found no full result.*carve it in full"):
+            fw.export([carved], str(path))
+        fw.update(carved)
+        self.assertEqual(fw.export([carved], str(path)), [str(path)])
+        self.assertEqual(path.read_bytes(), Path(carved.Package).read_bytes())
+        fw.change(carved, synthesis_seed=5)
+        with self.assertRaisesRegex(BadSettings, "found an older result"):
+            fw.export([carved], str(path))
+        with self.assertRaisesRegex(BadInput, "Box: found Part::Feature"):
+            fw.export([self.document.Box], str(path))
+
+    def test_several_objects_go_into_files_of_their_own_or_none_does(self):
+        one = fw.carve(self.shape(), pattern="hexagons", **QUICK)
+        two = fw.carve(self.document.Box, pattern="bricks", draft=True, **QUICK)
+        two.Label = "lid/2"
+        path = self.folder / "out.3mf"
+        with self.assertRaises(BadSettings):
+            fw.export([one, two], str(path))
+        self.assertEqual(list(self.folder.iterdir()), [])
+        fw.update(two)
+        written = fw.export([one, two], str(path))
+        self.assertEqual([Path(name).name for name in written], ["out-Box carved.3mf", "out-lid_2.3mf"])
+        for name in written:
+            json.loads(engine().run(["info", name, "--json"]))
+
+    def test_freecad_exports_by_the_type_that_is_registered(self):
+        carved = fw.carve(self.shape(), pattern="hexagons", **QUICK)
+        self.assertIn("freecad.fretwork.exchange", App.getExportType("3mf"))
+        path = self.folder / "out.3mf"
+        importlib.import_module("freecad.fretwork.exchange").export([carved], str(path))
+        self.assertEqual(path.read_bytes(), Path(carved.Package).read_bytes())
+
+    def test_the_slicer_gets_the_package_under_the_name_of_the_object(self):
+        carved = fw.carve(self.shape(), pattern="hexagons", **QUICK)
+        told = self.folder / "told"
+        slicer = self.folder / "slicer"
+        slicer.write_text(f'#!/bin/sh\nsha256sum "$1" > "{told}.part" && mv "{told}.part" "{told}"\n')
+        slicer.chmod(0o755)
+        self.assertEqual(fw.open_in_slicer([carved], str(slicer)).name, "slicer")
+        end = time.monotonic() + 20
+        while not told.exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        digest, name = told.read_text().split(maxsplit=1)
+        self.assertEqual(digest, hashlib.sha256(Path(carved.Package).read_bytes()).hexdigest())
+        self.assertEqual(Path(name.strip()).name, "Box carved.3mf")
+        with self.assertRaisesRegex(EngineError, "found no slicer 'nix'"):
+            fw.open_in_slicer([carved], "nix")

@@ -17,6 +17,7 @@ from ..engine.errors import BadInput, BadSettings, Cancelled, CannotBeMet, Engin
 from ..engine.program import clean_environment, find_program
 from ..engine.request import CarveRequest, lay_down
 from ..engine.run import Messages
+from ..engine.slicers import choose_slicer, find_slicers
 from ..engine.spec import KEEP, LOADS, Region, spec_text
 
 _TETRAHEDRON = b"OFF\n4 4 0\n0 0 0\n30 0 0\n0 30 0\n0 0 30\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"
@@ -209,6 +210,42 @@ class TheProgram(unittest.TestCase):
         with self.assertRaisesRegex(Cancelled, "enough"):
             self.engine.run(files.full_steps()[0], stop)
         self.assertEqual(os.listdir(files.package.parent), [])
+
+
+class Slicers(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def program(self, name: str) -> Path:
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("#!/bin/sh\n")
+        path.chmod(0o755)
+        return path
+
+    def found(self):
+        return find_slicers({"PATH": str(self.folder)}, [self.folder / "flatpak"])
+
+    def test_programs_and_flatpaks_are_found_one_of_each_kind(self):
+        self.assertEqual(self.found(), [])
+        cura, prusa = self.program("cura"), self.program("prusa-slicer")
+        self.program("PrusaSlicer")
+        orca = self.program("flatpak/com.orcaslicer.OrcaSlicer")
+        self.assertEqual([(s.name, s.command) for s in self.found()],
+                         [("PrusaSlicer", (str(prusa),)), ("OrcaSlicer", (str(orca),)), ("Cura", (str(cura),))])  # fmt: skip
+
+    def test_one_is_chosen_by_name_or_as_a_program_and_else_the_first(self):
+        self.program("cura"), self.program("prusa-slicer")
+        own = self.program("own/slicer")
+        self.assertEqual(choose_slicer("", self.found()).name, "PrusaSlicer")
+        self.assertEqual(choose_slicer("cura", self.found()).name, "Cura")
+        self.assertEqual(choose_slicer(str(own), self.found()).command, (str(own),))
+        with self.assertRaisesRegex(LookupError, "'nix'.*there is PrusaSlicer, Cura"):
+            choose_slicer("nix", self.found())
+        with self.assertRaisesRegex(LookupError, "there is none"):
+            choose_slicer("", [])
 
 
 if __name__ == "__main__":

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import unittest.mock
+from pathlib import Path
+
 import FreeCAD as App
 import FreeCADGui as Gui
 
 import freecad.fretwork as fw
 
 from .. import background
+from ..preferences import parameters
 from ..qt import QtCore, QtWidgets
 from .support import QUICK
 from .window import WindowTest, wait, wait_until
@@ -227,3 +231,33 @@ def _shown_colors(obj) -> int:
     search.apply(obj.ViewObject.RootNode)
     paths = search.getPaths()
     return max(paths[i].getTail().diffuseColor.getNum() for i in range(paths.getLength()))
+
+
+class Preferences(WindowTest):
+    def test_the_page_keeps_the_slicer_that_is_named(self):
+        self.addCleanup(parameters().RemString, "Slicer")
+        seen = []
+
+        def name_a_slicer():
+            dialog = QtWidgets.QApplication.activeModalWidget()
+            chooser = dialog.findChild(QtWidgets.QWidget, "slicer")
+            seen.append(chooser is not None)
+            self.picture("preferences")
+            if chooser:
+                chooser.setProperty("fileName", "/opt/slicer")
+            dialog.accept()
+
+        QtCore.QTimer.singleShot(500, name_a_slicer)
+        Gui.showPreferences("Fretwork", 0)
+        self.assertEqual(seen, [True])
+        self.assertEqual(parameters().GetString("Slicer"), "/opt/slicer")
+
+
+class Exchange(WindowTest):
+    def test_a_carved_object_is_exported_by_its_command(self):
+        carved = fw.carve(self.shape(), pattern="hexagons", **QUICK)
+        path = self.folder / "box.3mf"
+        self.select(carved)
+        with unittest.mock.patch.object(QtWidgets.QFileDialog, "getSaveFileName", return_value=(str(path), "")):
+            Gui.runCommand("Fretwork_Export", 0)
+        self.assertEqual(path.read_bytes(), Path(carved.Package).read_bytes())
