@@ -12,7 +12,6 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/mesh/edge_table.h"
-#include "core/pipeline/stress_scale.h"
 
 namespace fretwork::cli {
 namespace {
@@ -86,15 +85,6 @@ Rgb8 label_color(double label) {
     return color;
 }
 
-std::vector<Rgb8> stress_colors(const std::vector<double>& values) {
-    ShellStress stress;
-    stress.after.samples_mpa = {values.empty() ? 0.0 : *std::ranges::max_element(values)};
-    const StressScale scale = stress_scale(stress);
-    std::vector<Rgb8> colors;
-    for (const double mpa : values) colors.push_back(mpa > 0.0 ? stress_color(scale.place(mpa)) : kNotKnown);
-    return colors;
-}
-
 }  // namespace
 
 RenderColor render_color_named(const std::string& name) {
@@ -118,11 +108,20 @@ std::vector<Rgb8> render_colors(const VolumetricFile& file, RenderColor color, c
     const std::vector<double> values = triangle_values(file.mesh.mesh, object, property,
                                                        // Labels are everywhere on the shell and nowhere else.
                                                        color == RenderColor::kStress ? "fw:stress" : "fw:label");
-    if (color == RenderColor::kStress) return stress_colors(values);
+    if (color == RenderColor::kStress) return stress_colors(values).colors;
     std::vector<Rgb8> colors;
     for (const double value : values)
         colors.push_back(color == RenderColor::kLabels ? label_color(value) : value > 0.5 ? kBridge : kPlain);
     return colors;
+}
+
+StressColors stress_colors(const std::vector<double>& mpa) {
+    ShellStress stress;
+    stress.after.samples_mpa = {mpa.empty() ? 0.0 : *std::ranges::max_element(mpa)};
+    StressColors result{stress_scale(stress), {}};
+    for (const double value : mpa)
+        result.colors.push_back(value > 0.0 ? stress_color(result.scale.place(value)) : kNotKnown);
+    return result;
 }
 
 }  // namespace fretwork::cli

@@ -70,6 +70,9 @@ void add_verdict(const StrengthVerdict& strength, Facts& facts) {
     const JudgedBody& weakest = weakest_of(strength.bodies);
     if (!weakest.label.empty()) facts.add("strength.object", weakest.label);
     add_strength_facts(weakest.check, weakest.faults, "strength.", facts);
+    if (weakest.stress_scale)
+        facts.add("strength.stress_scale_mpa",
+                  std::vector<double>{weakest.stress_scale->low_mpa, weakest.stress_scale->high_mpa});
     if (weakest.label.empty()) return;
     std::vector<Facts> objects;
     for (const JudgedBody& body : strength.bodies) {

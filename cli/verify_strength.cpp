@@ -4,17 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "cli/carve_again.h"
 #include "cli/carve_model.h"
 #include "cli/carve_run.h"
 #include "cli/pattern_options.h"
+#include "cli/render_colors.h"
 #include "core/base/error.h"
 #include "core/mesh/repair.h"
 #include "core/pipeline/object_settings.h"
 #include "core/pipeline/resolve_settings.h"
+#include "core/pipeline/shell_strength.h"
 #include "core/strength/strength_faults.h"
+#include "formats/mesh_file.h"
 #include "formats/run_source.h"
 #include "formats/spec_toml_reader.h"
 
@@ -107,8 +111,16 @@ StrengthCheckSettings check_settings(const Settings& settings, const StrengthOpt
 struct Judged {
     std::string label;  ///< empty: the only one
     std::optional<StrengthCheck> check;
+    std::optional<StressScale> stress_scale;
     std::vector<std::string> faults, cautions;
 };
+
+StressScale write_stress(const TriangleMesh& mesh, const std::vector<double>& stress_mpa,
+                         const StrengthOptions& options) {
+    const StressColors shown = stress_colors(stress_mpa);
+    write_mesh(std::filesystem::path(options.stress_output), {mesh, shown.colors, "stress"});
+    return shown.scale;
+}
 
 /// \param settings  of the whole file; none: it bears its own weight
 void judge(const CarveTarget& body, const CarveTarget* source, const std::optional<Settings>& settings,
@@ -130,6 +142,8 @@ void judge(const CarveTarget& body, const CarveTarget* source, const std::option
         judged.cautions.push_back(fmt::format("whether it holds is not known: {}", error.what()));
         return;
     }
+    if (!options.stress_output.empty())
+        judged.stress_scale = write_stress(body.mesh, stress_on_triangles(body.mesh, *judged.check, run), options);
     keep_report_only(*judged.check);
     judged.faults = strength_faults(judged.check->report);
     judged.cautions = strength_cautions(judged.check->report);
@@ -145,7 +159,9 @@ void add_to(StrengthVerdict& verdict, Judged judged) {
     };
     take(verdict.faults, judged.faults);
     take(verdict.cautions, judged.cautions);
-    if (judged.check) verdict.bodies.push_back({judged.label, std::move(*judged.check), std::move(judged.faults)});
+    if (judged.check)
+        verdict.bodies.push_back(
+            {judged.label, std::move(*judged.check), judged.stress_scale, std::move(judged.faults)});
 }
 
 }  // namespace
@@ -166,6 +182,11 @@ void add_strength_flags(CLI::App& command, StrengthOptions& options) {
         ->type_name("N")
         ->check(CLI::Range(8, 2048))
         ->group(group);
+    command
+        .add_option("--stress", options.stress_output,
+                    "Write the model in the colours of its stress: PLY, 3MF, OBJ, OFF, AMF or GLB")
+        ->type_name("FILE")
+        ->group(group);
 }
 
 const JudgedBody& weakest_of(const std::vector<JudgedBody>& bodies) {
@@ -185,12 +206,15 @@ StrengthVerdict verify_strength(const ModelBytes& model, const TriangleMesh& mes
         return verdict;
     }
     const std::vector<CarveTarget> bodies = bodies_of(model, mesh, known.settings, run);
+    if (bodies.size() > 1 && !options.stress_output.empty())
+        throw InvalidSetting(fmt::format("--stress: {} objects are judged, expected one", bodies.size()));
     const RunControl judging = run.slice(0.05, 1.0);
     const auto count = static_cast<double>(bodies.size());
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const CarveTarget& body = bodies[i];
         const auto from = static_cast<double>(i);
-        Judged judged{bodies.size() > 1 ? label_of(body) : "", {}, {}, {}};
+        Judged judged;
+        if (bodies.size() > 1) judged.label = label_of(body);
         judge(body, source_of(body, bodies.size(), known.sources), known.settings, report, options, limits,
               judging.slice(from / count, (from + 1.0) / count), judged);
         add_to(verdict, std::move(judged));

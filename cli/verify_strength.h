@@ -10,6 +10,7 @@
 #include "core/mesh/mesh_report.h"
 #include "core/pipeline/carve.h"
 #include "core/pipeline/strength_check.h"
+#include "core/pipeline/stress_scale.h"
 
 namespace fretwork::cli {
 
@@ -17,14 +18,16 @@ struct StrengthOptions {
     std::string spec;               ///< path; empty: the one that a carved 3MF keeps
     std::string material;           ///< empty: that of the spec
     std::optional<int> resolution;  ///< voxels along the longest side
+    std::string stress_output;      ///< path of a mesh in the colours of its stress; empty: none
 };
 
 void add_strength_flags(CLI::App& command, StrengthOptions& options);
 
 /// What was judged on its own.
 struct JudgedBody {
-    std::string label;    ///< as messages call it; empty: the only one
-    StrengthCheck check;  ///< its report alone
+    std::string label;                        ///< as messages call it; empty: the only one
+    StrengthCheck check;                      ///< its report alone
+    std::optional<StressScale> stress_scale;  ///< of the mesh in the colours of its stress, where one was asked for
     std::vector<std::string> faults;
 };
 
@@ -41,6 +44,7 @@ const JudgedBody& weakest_of(const std::vector<JudgedBody>& bodies);
 /// judged one by one, each by its own settings (`[[object]]`). Regions are looked for on the model that was carved
 /// where the package keeps it, else on the carved surface.
 /// \param mesh  of the whole file, repaired
+/// \throws InvalidSetting  `stress_output` for more than one body. \throws FileError  it cannot be written
 StrengthVerdict verify_strength(const ModelBytes& model, const TriangleMesh& mesh, const MeshReport& report,
                                 const StrengthOptions& options, const RunLimits& limits, const RunControl& run);
 

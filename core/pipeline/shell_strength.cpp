@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/mesh/nearest_point.h"
 
 namespace fretwork {
+namespace {
+
+constexpr float kMpaPerPa = 1e-6F;
+
+}  // namespace
 
 ShellStrength strength_on_shell(const SurfaceVoxels& shell, const SolidStates& solid, const StrengthCheck& check,
                                 const RunControl& run) {
@@ -25,7 +31,6 @@ ShellStrength strength_on_shell(const SurfaceVoxels& shell, const SolidStates& s
         place_of[i] = nearest.to(check.grid.center_mm(check.voxels[i]));
     });
 
-    constexpr float kMpaPerPa = 1e-6F;
     ShellStrength result;
     result.factor.assign(shell.size(), static_cast<float>(kMostFactor));
     result.stress_mpa.assign(shell.size(), -1.0F);
@@ -35,6 +40,22 @@ ShellStrength strength_on_shell(const SurfaceVoxels& shell, const SolidStates& s
         result.stress_mpa[v] = std::max(result.stress_mpa[v], kMpaPerPa * check.report.worst_stress_sum_pa[i]);
     }
     return result;
+}
+
+std::vector<double> stress_on_triangles(const TriangleMesh& carved, const StrengthCheck& check, const RunControl& run) {
+    std::vector<Vec3> centers_mm;
+    centers_mm.reserve(check.voxels.size());
+    for (const VoxelCoord& voxel : check.voxels) centers_mm.push_back(check.grid.center_mm(voxel));
+    const NearestPoint nearest(std::move(centers_mm), run);
+    std::vector<double> stress_mpa(carved.triangles.size());
+    parallel_for(stress_mpa.size(), 1 << 12, [&](std::size_t t) {
+        if (t % 1024 == 0) run.throw_if_stopped();
+        const Triangle& corners = carved.triangles[t];
+        const auto& p = carved.positions_mm;
+        const std::uint32_t voxel = nearest.to((p[corners[0]] + p[corners[1]] + p[corners[2]]) / 3.0);
+        stress_mpa[t] = double{kMpaPerPa * check.report.worst_stress_sum_pa[voxel]};
+    });
+    return stress_mpa;
 }
 
 }  // namespace fretwork

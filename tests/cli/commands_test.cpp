@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -10,6 +11,7 @@
 #include "cli/run_program.h"
 #include "core/exemplar/builtin/builtin_patterns.h"
 #include "core/mesh/mesh_report.h"
+#include "core/pipeline/stress_scale.h"
 #include "formats/image_file.h"
 #include "formats/mesh_file.h"
 #include "support/make_meshes.h"
@@ -494,6 +496,36 @@ TEST_CASE("cli: verify says whether a model holds, and --strict whether it does 
     const ProgramResult open = run_program({"verify", folder / "open.stl"});
     CHECK(open.exit_code == 0);
     CHECK(open.err.find("note: whether it holds is not known") != std::string::npos);
+}
+
+TEST_CASE("cli: verify writes a model in the colours of its stress", "[cli]") {
+    const TemporaryFolder folder;
+    write_mesh(std::filesystem::path(folder / "post.stl"), {testing::make_box(Vec3::Zero(), Vec3(4, 4, 40))});
+    spit(folder / "loads.toml",
+         "[[loads]]\nname = \"top\"\nshape = \"box\"\nmin_mm = [-1, -1, 38]\nmax_mm = [5, 5, 41]\n"
+         "force_n = [20, 0, 0]\n");
+    const ProgramResult found = run_program({"verify", folder / "post.stl", "--spec", folder / "loads.toml",
+                                             "--resolution", "80", "--json", "--stress", folder / "stress.ply"});
+    CAPTURE(found.err);
+    REQUIRE(found.exit_code == 0);
+    const std::vector<double> ends = Json::parse(found.out)["strength"]["stress_scale_mpa"];
+    // The lowest tenth is held: above it the outermost voxels bear up to 50 MPa.
+    CHECK(ends == std::vector<double>{0.05, 50.0});
+    const MeshFile shown = read_mesh(std::filesystem::path(folder / "stress.ply"));
+    REQUIRE(shown.triangle_colors.size() == shown.mesh.triangles.size());
+    int compared = 0;
+    for (std::size_t t = 0; t < shown.mesh.triangles.size(); ++t) {
+        Vec3 middle = Vec3::Zero();
+        for (const std::uint32_t v : shown.mesh.triangles[t]) middle += shown.mesh.positions_mm[v] / 3.0;
+        if (middle[0] > 1e-6 && middle[0] < 4.0 - 1e-6) continue;
+        // On the sides that are pulled and pushed: moment over section, in the middle of the outermost voxels.
+        const double mpa = 20.0 * (39.0 - middle[2]) * 1.75 / (256.0 / 12.0);
+        const Rgb8 expected = stress_color(StressScale{ends[0], ends[1]}.place(mpa));
+        for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(shown.triangle_colors[t][k] - expected[k]) <= 8);
+        ++compared;
+    }
+    CHECK(compared == 4);
+    CHECK(run_program({"verify", folder / "post.stl", "--stress", folder / "none/stress.ply"}).exit_code == 2);
 }
 
 TEST_CASE("cli: verify of a carved package takes the loads that it was carved for", "[cli]") {

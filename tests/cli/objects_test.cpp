@@ -191,6 +191,10 @@ TEST_CASE("cli: verify judges every object of a plate on its own", "[cli][threem
     CHECK(strength["factor_of_safety"].get<double>() == factor(1));
     CHECK(run.err.find("fault: \"soft\": breaks under") != run.err.npos);
     CHECK(run.err.find("fault: \"firm\": breaks under") != run.err.npos);
+    const ProgramResult colors = run_program({"verify", folder / "posts.3mf", "--spec", folder / "loads.toml",
+                                              "--resolution", "40", "--stress", folder / "stress.ply"});
+    CHECK(colors.exit_code == 1);
+    CHECK(colors.err.find("--stress: 2 objects are judged, expected one") != colors.err.npos);
 }
 
 TEST_CASE("cli: verify of a carved plate judges what was carved of it", "[cli][threemf]") {
