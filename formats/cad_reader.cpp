@@ -15,6 +15,7 @@
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <algorithm>
 #include <cmath>
@@ -91,7 +92,9 @@ constexpr double kNothing = 1e-12;  // of the longest side
 class FaceCollector {
   public:
     FaceCollector(const SewnShape& sewn, std::string_view source)
-        : source_(source), welder_(1 << 16), numbers_(sewn.faces), nothing_(kNothing * longest_side(sewn.shape)) {}
+        : source_(source), welder_(1 << 16), nothing_(kNothing * longest_side(sewn.shape)) {
+        for (const TopoDS_Shape& face : sewn.faces) numbers_.Add(face);
+    }
 
     void add_faces(const TopoDS_Shape& within, TopAbs_ShapeEnum but_not_in = TopAbs_SHAPE) {
         for (TopExp_Explorer face(within, TopAbs_FACE, but_not_in); face.More(); face.Next())
@@ -153,7 +156,7 @@ class FaceCollector {
     std::string_view source_;
     EqualPointWelder welder_;
     MeshFile file_;
-    const TopTools_IndexedMapOfShape& numbers_;
+    TopTools_IndexedMapOfShape numbers_;
     double nothing_;         ///< smaller coordinates are 0
     std::size_t faces_ = 0;  ///< number of the one in hand
 };

@@ -7,6 +7,7 @@
 #include <BRep_Tool.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Solid.hxx>
@@ -45,13 +46,10 @@ SewnShape sew_loose_faces(const TopoDS_Shape& shape, double longest_side) {
     bool loose = false;
     for (TopExp_Explorer face(shape, TopAbs_FACE, TopAbs_SOLID); face.More(); face.Next(), loose = true)
         sewing.Add(face.Current());
-    if (!loose) {
-        result.faces = numbers;
-        return result;
-    }
-    sewing.Perform();
+    if (loose) sewing.Perform();
     for (Standard_Integer i = 1; i <= numbers.Extent(); ++i)
-        result.faces.Add(sewing.IsModified(numbers(i)) ? sewing.Modified(numbers(i)) : numbers(i));
+        result.faces.push_back(loose && sewing.IsModified(numbers(i)) ? sewing.Modified(numbers(i)) : numbers(i));
+    if (!loose) return result;
     TopoDS_Compound all;
     const BRep_Builder builder;
     builder.MakeCompound(all);

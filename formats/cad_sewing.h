@@ -1,14 +1,14 @@
 // Loose faces of a CAD model -> faces that share their edges. Internal to this folder.
 #pragma once
 
-#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Shape.hxx>
+#include <vector>
 
 namespace fretwork {
 
 struct SewnShape {
     TopoDS_Shape shape;
-    TopTools_IndexedMapOfShape faces;  ///< of `shape`, under the numbers that they have in the file, from 1
+    std::vector<TopoDS_Shape> faces;  ///< of `shape`, in the order of their numbers in the file
 };
 
 /// IGES holds faces without their neighbours, and so do surface models of STEP: each would be broken into triangles
