@@ -1,4 +1,5 @@
-// How long a carve goes on after it was asked to stop, at many moments of the run, in Markdown on stdout.
+// How long a carve with its full analysis goes on after it was asked to stop, at many moments of the run, in Markdown
+// on stdout.
 //   cancel_latency MESH [RESOLUTION [MOMENTS]]
 // Each moment is a run of its own that is asked to stop then; the promise is 0.2 s (a machine with other work on it
 // shows more). The worst moment of each stage is printed.
@@ -66,6 +67,7 @@ int main(int argc, char** argv) {
     Settings settings;
     settings.input.size_mm = 100.0;
     settings.exemplar.pattern = "cells";
+    settings.structure.verify_rounds = 1;
     settings.shell.resolution = argc > 2 ? std::stoi(argv[2]) : 256;
     const int moments = argc > 3 ? std::stoi(argv[3]) : 32;
     ChosenExemplar chosen = builtin_exemplar(settings.exemplar);
