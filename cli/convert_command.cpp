@@ -23,8 +23,7 @@ int convert_command(const ConvertOptions& options, Interrupt& interrupt) {
     const RunControl run = control_of(options.run, interrupt);
     const ModelBytes model = read_bytes(options.model);
     MeshFile file = read_model(model, options.model.cad, run.slice(0.0, 0.6));
-    if (!options.run.quiet)
-        for (const std::string& warning : file.warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
+    if (!options.run.quiet) print_warnings(file);
     for (Vec3& p : file.mesh.positions_mm) p *= options.scale;
     const MeshBytes result = mesh_bytes(options.output, {file.mesh, file.triangle_colors, title_of(model)}, format);
     if (!result.materials_path.empty()) put(result.materials_path, result.materials, interrupt);
@@ -44,6 +43,7 @@ void add_convert(CLI::App& program, Action& chosen) {
     command->add_option("out", options->output, std::string(kWritable) + "; - writes standard output")
         ->required()
         ->type_name("OUT");
+    add_ignore_required_flag(*command, options->model);
     command->add_option("--input-format", options->model.format, "Format of IN when the name does not tell")
         ->type_name("FORMAT");
     command->add_option("--input-name", options->model.name, "What standard input is called in the result")

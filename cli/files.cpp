@@ -86,6 +86,7 @@ ModelBytes read_bytes(const ModelSource& source, const RunControl& run) {
     if (is_scad(source)) return render_scad(source.path, {}, ScadMarks::kLeaveOut, run).model;
     ModelBytes model;
     model.unit = unit_named(source.unit);
+    model.ignore_required = source.ignore_required;
     const bool stream = source.path == kStream;
     if (stream && source.format.empty()) throw InvalidSetting("reading from standard input needs --input-format");
     if (!stream && !source.name.empty()) throw InvalidSetting("--input-name goes with - for standard input");
@@ -109,11 +110,21 @@ MeshFile read_model(const ModelBytes& model, const CadMeshing& cad, const RunCon
     options.unit = model.unit;
     options.cad = cad;
     options.folder = model.folder;
+    options.ignore_required = model.ignore_required;
     for (const RunFile& file : model.materials) options.materials.emplace(file.path, file.bytes);
     MeshFile file = read_mesh(model.bytes, model.format, model.name, options, run);
     file.warnings.insert(file.warnings.begin(), model.warnings.begin(), model.warnings.end());
     for (const std::string& beside : model.read_beside) file.read_beside.push_back({beside, {}});
     return file;
+}
+
+void add_ignore_required_flag(CLI::App& command, ModelSource& model) {
+    command.add_flag("--ignore-required", model.ignore_required,
+                     "Read a 3MF although it requires an extension that is not known");
+}
+
+void print_warnings(const MeshFile& file) {
+    for (const std::string& warning : file.warnings) fmt::print(stderr, "fretwork: warning: {}\n", warning);
 }
 
 MeshBytes mesh_bytes(const std::string& path, MeshToWrite mesh, MeshFormat format) {

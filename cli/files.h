@@ -1,6 +1,7 @@
 // Models and results: files, standard input and output.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@ struct ModelSource {
     std::string unit = "millimeter";  ///< of files that name none
     CadMeshing cad = {};              ///< of STEP, IGES and BREP
     std::string name = {};            ///< of what comes from standard input; empty: "standard input"
+    bool ignore_required = false;     ///< of a 3MF: read on where an unknown extension is required
 };
 
 /// A model as it lies in its file.
@@ -35,6 +37,7 @@ struct ModelBytes {
     std::vector<std::string> read_beside = {};         ///< other files that the bytes were made from
     std::vector<RunFile> materials = {};               ///< of an OBJ, where they come from elsewhere than its folder
     std::vector<std::string> warnings = {};
+    bool ignore_required = false;
 };
 
 /// An OpenSCAD file is rendered: its bytes are those of the mesh.
@@ -67,6 +70,12 @@ struct MeshBytes {
 
 /// \param path  where the mesh will go; an OBJ has its colours beside it unless it is a stream
 MeshBytes mesh_bytes(const std::string& path, MeshToWrite mesh, MeshFormat format);
+
+/// `--ignore-required` of the commands that read a 3MF and carve nothing.
+void add_ignore_required_flag(CLI::App& command, ModelSource& model);
+
+/// What a reader left out or found odd, on standard error.
+void print_warnings(const MeshFile& file);
 
 /// Fails before the work is done rather than after it.
 /// \throws FileError  `path` is a folder, cannot be written, or is one of the `inputs`.

@@ -72,7 +72,7 @@ MeshFile colored_model(const RenderOptions& options, const RunControl& run) {
     const ModelBytes model = read_bytes(options.model, run);
     if (model.format != MeshFormat::kThreemf)
         throw InvalidInput(fmt::format("--colour {}: found {}, expected a carved 3MF", options.color, model.name));
-    VolumetricFile file = read_threemf_with_volumes(model.bytes, model.name, run);
+    VolumetricFile file = read_threemf_with_volumes(model.bytes, model.name, run, {model.ignore_required});
     file.mesh.triangle_colors = render_colors(file, color, model.name);
     return std::move(file.mesh);
 }
@@ -84,6 +84,7 @@ int render_command(const RenderOptions& options, Interrupt& interrupt) {
     const ThreadLimit threads(options.run.threads);
     const RunControl run = control_of(options.run, interrupt);
     const MeshFile file = colored_model(options, run.slice(0.0, 0.1));
+    if (!options.run.quiet) print_warnings(file);
     const Image picture = picture_of(file, options, settings, run.slice(0.1, 0.95));
     put(options.output, write_png(picture), interrupt);
     run.checkpoint("write", 1.0);
@@ -120,6 +121,7 @@ void add_render(CLI::App& program, Action& chosen) {
                      "material (pattern)")
         ->type_name("WHAT");
     command->add_flag("--no-colors", options->no_colors, "One material instead of the model's colours");
+    add_ignore_required_flag(*command, options->model);
     command->add_option("--input-format", options->model.format, "Format of FILE when the name does not tell")
         ->type_name("FORMAT");
     add_run_flags(*command, options->run);

@@ -89,6 +89,7 @@ int verify_command(const VerifyOptions& options, Interrupt& interrupt) {
     const RunControl reading = run.slice(0.0, 0.2);
     const ModelBytes model = read_bytes(options.model, reading);
     const MeshFile file = read_model(model, options.model.cad, reading);
+    if (!options.run.quiet) print_warnings(file);
     // Vertices of formats that know none are joined; nothing else changes in a sound mesh.
     const TriangleMesh mesh = repair_mesh(file.mesh, {}, run.slice(0.2, 0.3)).mesh;
     const MeshReport report = report_mesh(mesh, CountSelfIntersections::kYes, run.slice(0.3, 0.5));
@@ -143,6 +144,7 @@ void add_verify(CLI::App& program, Action& chosen) {
         ->group(printer);
     add_strength_flags(*command, options->strength);
     command->add_flag("--no-strength", options->no_strength, "Leave out whether it holds")->group("Strength");
+    add_ignore_required_flag(*command, options->model);
     command->add_option("--input-format", options->model.format, "Format of the model when the name does not tell")
         ->type_name("FORMAT");
     command->add_option("--input-unit", options->model.unit, "Unit of a model whose file names none (millimeter)")

@@ -94,7 +94,7 @@ MeshFormat mesh_format_from_path(const std::filesystem::path& path) {
 
 namespace {
 
-MeshFile read_format(std::string_view bytes, MeshFormat format, std::string_view source, const CadMeshing& meshing,
+MeshFile read_format(std::string_view bytes, MeshFormat format, std::string_view source, const MeshReadOptions& options,
                      const ObjMaterialFiles& materials, const RunControl& run) {
     switch (format) {
         case MeshFormat::kStl:
@@ -106,13 +106,13 @@ MeshFile read_format(std::string_view bytes, MeshFormat format, std::string_view
         case MeshFormat::kOff:
             return read_off(bytes, source, run);
         case MeshFormat::kThreemf:
-            return read_threemf(bytes, source, run);
+            return read_threemf(bytes, source, run, {options.ignore_required});
         case MeshFormat::kAmf:
             return read_amf(bytes, source, run);
         case MeshFormat::kStep:
         case MeshFormat::kIges:
         case MeshFormat::kBrep:
-            return read_cad_format(bytes, format, source, meshing, run);
+            return read_cad_format(bytes, format, source, options.cad, run);
         case MeshFormat::kGlb:
             break;
     }
@@ -135,7 +135,7 @@ MeshFile read_mesh(std::string_view bytes, MeshFormat format, std::string_view s
         beside.push_back({file, read_file(file)});
         return beside.back().bytes;
     };
-    MeshFile file = read_format(bytes, format, source, options.cad, materials, run);
+    MeshFile file = read_format(bytes, format, source, options, materials, run);
     file.read_beside = std::move(beside);
     if (file.mesh.triangles.empty())
         fail_parse(source, place_of_byte(bytes.size()), "no triangle in the whole file", "at least one");

@@ -38,6 +38,7 @@ struct MeshReadOptions {
     std::optional<std::filesystem::path> folder = {};
     /// Those that are at hand already, by the name of their file; they win over the folder.
     std::map<std::string, std::string, std::less<>> materials = {};
+    bool ignore_required = false;  ///< of a 3MF: an unknown extension that it requires is a warning
 };
 
 /// Limits: files up to 4 GiB, coordinates up to 1e9 in size.

@@ -257,8 +257,9 @@ std::vector<VolumetricObject> read_volumetric_threemf(std::string_view bytes, st
     return VolumetricLoader(package, model, source, max_samples, run).load();
 }
 
-VolumetricFile read_threemf_with_volumes(std::string_view bytes, std::string_view source, const RunControl& run) {
-    threemf::Build build(bytes, source, {}, run);
+VolumetricFile read_threemf_with_volumes(std::string_view bytes, std::string_view source, const RunControl& run,
+                                         const ThreemfReadOptions& options) {
+    threemf::Build build(bytes, source, options, run);
     VolumetricFile file;
     file.objects = VolumetricLoader(build.package(), build.root(), source, kMaxStoredSamples, run).load();
     file.mesh = flatten_build(std::move(build), {}, run);

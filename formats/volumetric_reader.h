@@ -10,6 +10,7 @@
 #include "core/base/run_control.h"
 #include "core/base/vec.h"
 #include "formats/mesh_data.h"
+#include "formats/threemf_build.h"
 
 namespace fretwork {
 
@@ -57,6 +58,7 @@ struct VolumetricFile {
 
 /// What `read_threemf` and `read_volumetric_threemf` tell of a package, for the price of reading it once.
 /// \throws InvalidInput  as they do. \throws Cancelled
-VolumetricFile read_threemf_with_volumes(std::string_view bytes, std::string_view source, const RunControl& run = {});
+VolumetricFile read_threemf_with_volumes(std::string_view bytes, std::string_view source, const RunControl& run = {},
+                                         const ThreemfReadOptions& options = {});
 
 }  // namespace fretwork

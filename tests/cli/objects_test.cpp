@@ -257,6 +257,31 @@ TEST_CASE("cli: an unknown required extension is named, or let pass", "[cli][thr
     CHECK(xml.find("z:more=\"kept\"") != xml.npos);
 }
 
+TEST_CASE("cli: commands that only read a 3MF let a required extension pass as carve does", "[cli][threemf][errors]") {
+    const TemporaryFolder folder;
+    const std::string model = make_model(make_mesh_object(1, make_icosphere(10.0, 2)), "<item objectid=\"1\"/>",
+                                         "requiredextensions=\"z\" xmlns:z=\"http://example.com/unknown\"");
+    const std::string in = folder / "in.3mf";
+    spit(in, make_package(model));
+    const std::vector<std::vector<std::string>> lines = {
+        {"convert", in, folder / "out.stl"},
+        {"render", in, "-o", folder / "out.png", "--size", "32"},
+        {"render", in, "-o", folder / "out.png", "--size", "32", "--colour", "solid"},
+        {"verify", in, "--no-strength"},
+    };
+    for (std::vector<std::string> line : lines) {
+        CAPTURE(line);
+        const ProgramResult refused = run_program(line);
+        CHECK(refused.exit_code == 2);
+        CHECK(refused.err.find("--ignore-required") != refused.err.npos);
+        line.emplace_back("--ignore-required");
+        const ProgramResult let = run_program(line);
+        CAPTURE(let.err);
+        CHECK(let.exit_code == 0);
+        CHECK(let.err.find("http://example.com/unknown") != let.err.npos);
+    }
+}
+
 TEST_CASE("cli: a 3MF carved into another format shows what the carved 3MF shows", "[cli][threemf]") {
     const TemporaryFolder folder;
     spit(folder / "in.3mf", three_boxes());
