@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "openscad";
 constexpr const char* kEmpty = "top level object is empty";
+constexpr const char* kNoFile = "WARNING: Can't open ";  ///< a library, an included file or an import
 
 /// Where OpenSCAD looks for libraries: what the user has set, then ours.
 std::string library_path(const fs::path& ours) {
@@ -33,8 +34,8 @@ std::string library_path(const fs::path& ours) {
 void hear(const ProcessResult& result, ScadRender& render) {
     std::istringstream lines(result.err + result.out);
     for (std::string line; std::getline(lines, line);) {
-        const bool fault =
-            line.starts_with("ERROR:") || line.find("CGAL error") != line.npos || line.find(kEmpty) != line.npos;
+        const bool fault = line.starts_with("ERROR:") || line.starts_with(kNoFile) ||
+                           line.find("CGAL error") != line.npos || line.find(kEmpty) != line.npos;
         if (fault && render.error.empty()) render.error = line;
         render.lines.push_back(std::move(line));
     }

@@ -104,6 +104,10 @@ TEST_CASE("openscad: errors that OpenSCAD passes over in silence end the run", "
     refused("x = 1;", "empty");
     refused("square(3);", "bad.scad");
     refused("import(\"nowhere.stl\");", "bad.scad");
+    // What is there renders without what is not, with an exit code of 0.
+    refused("cube(20); import(\"nowhere.stl\");", "nowhere.stl");
+    refused("use <nolib.scad>\ncube(20);", "nolib.scad");
+    refused("include <nofile.scad>\ncube(20);", "nofile.scad");
     // A surface with a hole in it is dropped by a difference, with an exit code of 0.
     refused(
         "difference() { polyhedron(points=[[0,0,0],[9,0,0],[0,9,0],[0,0,9]], faces=[[0,1,2],[0,3,1],[0,2,3]]); "
