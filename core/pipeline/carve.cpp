@@ -130,7 +130,7 @@ void note_pattern(const SurfaceVoxels& shell, const EnlargeResult& enlarged, Run
             "helps");
 }
 
-void note_output(const CarvedMesh& carved, const MeshReport& mesh, RunReport& report) {
+void note_output(const CarvedMesh& carved, const MeshReport& mesh, std::size_t target_triangles, RunReport& report) {
     report.mesh.report = mesh;
     report.mesh.islands_removed = carved.islands_removed;
     report.mesh.islands_volume_mm3 = carved.islands_volume_mm3;
@@ -141,6 +141,12 @@ void note_output(const CarvedMesh& carved, const MeshReport& mesh, RunReport& re
         report.warnings.push_back(
             fmt::format("the carved mesh has {} shells for {} parts of the model: some are cavities", mesh.components,
                         report.shell.components));
+    if (target_triangles > 0 && mesh.triangles > target_triangles)
+        report.warnings.push_back(
+            fmt::format("the carved mesh has {} triangles, more than fabrication.target_triangles = {}: with fewer it "
+                        "would not stay "
+                        "sound; a larger synthesis.scale makes a pattern that needs fewer",
+                        mesh.triangles, target_triangles));
 }
 
 bool analyses_strength(const Settings& settings) {
@@ -295,7 +301,7 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
         r.checkpoint("verify", 1.0);
         return found;
     });
-    note_output(result.carved, carved, report);
+    note_output(result.carved, carved, resolved.solidify.target_triangles, report);
     if (!is_draft(settings))
         report.print = plan.run("printability", [&](const RunControl& r) {
             return print_record(result.carved.mesh, report.shell.components, settings.fabrication, resolved, r);
@@ -313,10 +319,15 @@ CarveResult carve(const CarveInput& input, const Settings& settings, const RunLi
 
 namespace {
 
-/// Of a draft, what a printer would stumble over. It does not hold the promise of least widths, which is left out.
+/// Of a draft, what a printer would stumble over. It does not hold the promise of least widths, which is left out. A
+/// model that is metres tall, such as one in the wrong unit, is cut into thicker layers, to answer as soon.
 std::vector<std::string> draft_faults(const CarveResult& draft, const FabricationOptions& fabrication,
                                       const RunControl& run) {
-    PrintabilitySettings settings{fabrication.layer_height_mm, fabrication.overhang_deg};
+    constexpr double kMostLayers = 1000.0;
+    const MeshReport& mesh = draft.report.mesh.report;
+    const double height_mm = mesh.max_mm[2] - mesh.min_mm[2];
+    PrintabilitySettings settings{std::max(fabrication.layer_height_mm, height_mm / kMostLayers),
+                                  fabrication.overhang_deg};
     settings.bodies = draft.report.shell.components;
     PrintabilityReport found = printability(draft.carved.mesh, settings, run);
     found.least_solid.reset();

@@ -241,5 +241,20 @@ TEST_CASE("carve: a check foresees what the draft of a run finds", "[pipeline]")
     CHECK(told(weak, "a draft: stress of"));
 }
 
+TEST_CASE("carve: more triangles than were wanted are owned up to", "[pipeline]") {
+    const auto told = [](int wanted) {
+        Settings settings = quick();
+        settings.fabrication.target_triangles = wanted;
+        const RunReport report = carve(input_for(small_vase(), "cells"), settings).report;
+        const bool warned = std::ranges::any_of(
+            report.warnings, [](const std::string& w) { return w.find("fabrication.target_triangles") != w.npos; });
+        CHECK(warned == (wanted > 0 && report.mesh.report.triangles > static_cast<std::size_t>(wanted)));
+        return warned;
+    };
+    CHECK(told(10));
+    CHECK_FALSE(told(1000000));
+    CHECK_FALSE(told(0));
+}
+
 }  // namespace
 }  // namespace fretwork
