@@ -24,7 +24,7 @@ if FreeCAD:
 
 
 # What scripts use. It lies in `api`, which is imported when one of these is first asked for.
-_API = ("carve", "change", "export", "open_in_slicer", "patterns", "stop", "update")
+_API = ("carve", "change", "check_strength", "export", "open_in_slicer", "patterns", "stop", "update")
 
 
 def __getattr__(name: str):

@@ -9,12 +9,13 @@ import FreeCAD as App
 
 from .carved import Carved, properties_of_settings
 from .engine.errors import BadSettings
-from .packages import export, open_in_slicer
+from .packages import export, open_in_slicer, package_of
 from .preferences import engine
 from .results import make, remembered
 from .setting_properties import PATTERN, PICTURES, SettingProperty
+from .strength_check import analyse
 
-__all__ = ["carve", "change", "export", "open_in_slicer", "patterns", "stop", "update"]
+__all__ = ["carve", "change", "check_strength", "export", "open_in_slicer", "patterns", "stop", "update"]
 
 
 def carve(
@@ -90,6 +91,23 @@ def update(obj, draft: bool = False, wait: bool = True) -> None:
     from . import background
 
     job = background.start(obj, request, draft)
+    if wait:
+        job.wait()
+
+
+def check_strength(obj, wait: bool = True) -> None:
+    """Analyses the full result of an object voxel by voxel, as `fretwork verify` does, and shows its stress.
+
+    What it finds is in the properties Strength and ShowStress. With wait=False it goes on beside the window.
+    """
+    package, key = package_of(obj), obj.PackageKey
+    if not App.GuiUp:
+        obj.Proxy.show_strength(obj, analyse(engine(), package, key))
+        obj.purgeTouched()
+        return
+    from . import background
+
+    job = background.start_check(obj, package, key)
     if wait:
         job.wait()
 

@@ -6,6 +6,7 @@ The engine runs as a program of its own, so that nothing it does can take FreeCA
 from __future__ import annotations
 
 from functools import lru_cache
+from pathlib import Path
 from typing import Callable
 
 import FreeCAD as App
@@ -18,16 +19,17 @@ from .program_process import ProgramProcess
 from .qt import QtCore, run
 from .results import Result, Share, Task
 from .status_bar import JobBar
+from .strength_check import Strength, StrengthTask
 
 
 class Job(QtCore.QObject):
     """One task, run by the program step after step."""
 
     progressed = QtCore.Signal(str, float)  # stage, share of the whole
-    succeeded = QtCore.Signal(object)  # Result
+    succeeded = QtCore.Signal(object)  # what the task has made
     failed = QtCore.Signal(object)  # EngineError
 
-    def __init__(self, program: str, task: Task, parent=None):
+    def __init__(self, program: str, task: Task | StrengthTask, parent=None):
         super().__init__(parent)
         self.task = task
         self._program = program
@@ -62,7 +64,7 @@ class Job(QtCore.QObject):
         if self._step < len(self.task.steps):
             self.start()
         else:
-            self.succeeded.emit(self.task.done())
+            self.succeeded.emit(self.task.done(self._process.output()))
 
     def _fail(self, error: EngineError) -> None:
         self.task.discard()
@@ -142,8 +144,17 @@ def start(obj, request: CarveRequest, draft: bool) -> Job:
     if before:
         if (before.task.key, before.task.draft) == (request.key(), draft):
             return before
-        before.stop()
-    job = Job(engine().program, Task(request, draft))
+    return _begin(obj, Task(request, draft), _show, _tell)
+
+
+def start_check(obj, package: Path, key: str) -> Job:
+    """Starts the full analysis of what an object shows; a run of the object is ended first."""
+    return _begin(obj, StrengthTask(package, key), _show_strength, _tell_check)
+
+
+def _begin(obj, task: Task | StrengthTask, show: Callable, tell: Callable) -> Job:
+    stop(obj)
+    job = Job(engine().program, task)
     watch_documents()
     running = _Running(obj, job)
     where = (running.document, running.name)
@@ -157,8 +168,8 @@ def start(obj, request: CarveRequest, draft: bool) -> Job:
                 apply(target, value)
         job.deleteLater()
 
-    job.succeeded.connect(lambda result: ended(_show, result))
-    job.failed.connect(lambda error: ended(_tell, error))
+    job.succeeded.connect(lambda result: ended(show, result))
+    job.failed.connect(lambda error: ended(tell, error))
     job.start()
     if not any([listener(obj, job) for listener in listeners]):
         JobBar(obj.Label, job)
@@ -167,6 +178,18 @@ def start(obj, request: CarveRequest, draft: bool) -> Job:
 
 def _show(obj, result: Result) -> None:
     obj.Proxy.show(obj, result)
+    obj.purgeTouched()
+
+
+def _show_strength(obj, strength: Strength) -> None:
+    obj.Proxy.show_strength(obj, strength)
+    obj.purgeTouched()
+
+
+def _tell_check(obj, error: EngineError) -> None:
+    if not isinstance(error, Cancelled):
+        obj.Strength = [str(error)]
+        App.Console.PrintError(f"{obj.Label}: {error}\n")
     obj.purgeTouched()
 
 

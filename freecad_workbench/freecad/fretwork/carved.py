@@ -22,6 +22,7 @@ from .preferences import engine
 from .results import Result, make, remembered
 from .setting_properties import OWN_PICTURE, PICTURES, SettingProperty, changed_values, setting_properties
 from .source import model_of, region_of, same_placement
+from .strength_check import Strength
 from .translation import noop
 
 TYPE = "Fretwork::Carved"
@@ -55,6 +56,10 @@ _PROPERTIES = (
      noop("App::Property", "Volume of what is printed"), _READ_ONLY, None),
     ("App::PropertyPercent", "SolidShare", "Result",
      noop("App::Property", "How much of the carved surface is solid"), _READ_ONLY, None),
+    ("App::PropertyStringList", "Strength", "Result",
+     noop("App::Property", "What the full analysis says of the result"), _READ_ONLY, None),
+    ("App::PropertyBool", "ShowStress", "Result",
+     noop("App::Property", "Whether the object is shown in the colours of its stress"), 0, False),
     ("App::PropertyFileIncluded", "Package", "Result",
      noop("App::Property", "The 3MF of the last full run"), _OUT_OF_SIGHT, None),
     ("App::PropertyString", "PackageKey", "Result",
@@ -65,6 +70,10 @@ _PROPERTIES = (
      noop("App::Property", "Fingerprint of what the result was made from"), _OUT_OF_SIGHT, None),
     ("App::PropertyColorList", "FaceColors", "Result",
      noop("App::Property", "Colours of the triangles"), _OUT_OF_SIGHT, None),
+    ("App::PropertyColorList", "PatternColors", "Result",
+     noop("App::Property", "Colours of the pattern"), _OUT_OF_SIGHT, None),
+    ("App::PropertyColorList", "StressColors", "Result",
+     noop("App::Property", "Colours of the stress"), _OUT_OF_SIGHT, None),
     ("App::PropertyString", "MadeBy", "Result",
      noop("App::Property", "Version of the workbench that made the object"), _OUT_OF_SIGHT, migration.VERSION),
 )  # fmt: skip
@@ -101,10 +110,16 @@ class Carved:
             obj.Placement = obj.Source.Placement
         self.refresh(obj)
 
+    def onChanged(self, obj, name: str) -> None:
+        if name == "ShowStress" and "StressColors" in obj.PropertiesList:
+            self.show_colors(obj)
+
     def onDocumentRestored(self, obj) -> None:
         """Gives an object of an older version what it lacks."""
         self._add_own_properties(obj)
         migration.migrate(obj)
+        if not obj.PatternColors:
+            obj.PatternColors = obj.FaceColors
         try:
             self._add_settings(obj)
         except EngineError as missing:
@@ -159,7 +174,9 @@ class Carved:
         mesh = read_mesh(result.mesh, obj.InputUp)
         mesh.Placement = obj.Placement
         obj.Mesh = mesh
-        obj.FaceColors = read_face_colors(result.mesh)
+        obj.PatternColors = read_face_colors(result.mesh)
+        obj.StressColors, obj.Strength = [], []
+        self.show_colors(obj)
         report = result.report
         obj.Summary = summary_lines(report)
         obj.Warnings = warning_lines(report)
@@ -171,6 +188,21 @@ class Carved:
             obj.Package = str(result.package)
             obj.PackageKey = result.key
         obj.State = DRAFT if result.draft else CARVED
+
+    def show_strength(self, obj, strength: Strength) -> None:
+        """Puts what the full analysis found into the object, unless another result is there by now."""
+        if strength.key != obj.ResultKey:
+            return
+        obj.Strength = strength.lines
+        obj.StressColors = strength.colors
+        obj.ShowStress = bool(strength.colors)
+        self.show_colors(obj)
+
+    def show_colors(self, obj) -> None:
+        """Those of the stress where they are wanted and there are any; else those of the pattern."""
+        colors = obj.StressColors if obj.ShowStress and obj.StressColors else obj.PatternColors
+        if obj.FaceColors != colors:
+            obj.FaceColors = colors
 
     def _add_own_properties(self, obj) -> None:
         for kind, name, group, text, flags, first in _PROPERTIES:

@@ -108,6 +108,22 @@ class Stop:
             _run(f"fw.stop({_name(obj)})")
 
 
+class CheckStrength:
+    """Analyses the selected objects."""
+
+    def GetResources(self):
+        return _resources("Strength", noop("Fretwork_Strength", "Check strength"),
+                          noop("Fretwork_Strength", "Analyse the carved object voxel by voxel under its loads, and show "
+                               "its stress in colours"))  # fmt: skip
+
+    def IsActive(self):
+        return bool(_selected_carved())
+
+    def Activated(self):
+        for obj in _selected_carved():
+            _try(f"fw.check_strength({_name(obj)}, wait=False)")
+
+
 class Export:
     """Writes the 3MF of the selected objects."""
 
@@ -148,6 +164,7 @@ COMMANDS = {
     "Fretwork_Carve": Carve,
     "Fretwork_Update": Update,
     "Fretwork_Stop": Stop,
+    "Fretwork_Strength": CheckStrength,
     "Fretwork_Export": Export,
     "Fretwork_Slicer": OpenInSlicer,
 }

@@ -44,7 +44,7 @@ class Task:
         """Arguments of the program, run after run."""
         return self._files.draft_steps() if self.draft else self._files.full_steps()
 
-    def done(self) -> Result:
+    def done(self, _output: bytes = b"") -> Result:
         """Call once all steps have ended well. The result is remembered."""
         report = json.loads(self._files.summary.read_text(encoding="utf-8"))
         package = None if self.draft else self._files.package

@@ -99,7 +99,8 @@ class ResultBox(QtWidgets.QWidget):
         if self._closed or not same_object(self._obj, self._obj) or background.job_of(self._obj):
             return
         self._busy(False)
-        lines = [f"<b>{html.escape(translate(self._obj.State))}</b>", *map(html.escape, self._obj.Summary)]
+        facts = [*self._obj.Summary, *self._obj.Strength]
+        lines = [f"<b>{html.escape(translate(self._obj.State))}</b>", *map(html.escape, facts)]
         words = [problem] if problem else self._obj.Warnings
         lines += [f"<span style='color:#b35900'>&#9888; {html.escape(word)}</span>" for word in words]
         self.text.setText("<br>".join(lines))

@@ -340,3 +340,30 @@ class Packages(DocumentTest):
         self.assertEqual(Path(name.strip()).name, "Box carved.3mf")
         with self.assertRaisesRegex(EngineError, "found no slicer 'nix'"):
             fw.open_in_slicer([carved], "nix")
+
+
+class StrengthOfAResult(DocumentTest):
+    def test_a_full_result_is_analysed_and_shown_in_the_colours_of_its_stress(self):
+        carved = fw.carve(self.shape(), pattern="hexagons", draft=True, **QUICK)
+        with self.assertRaisesRegex(BadSettings, "carve it in full"):
+            fw.check_strength(carved)
+        fw.update(carved)
+        pattern = carved.FaceColors
+        fw.check_strength(carved)
+        found = json.loads(engine().run(["verify", carved.Package, "--json"]))["strength"]
+        self.assertIn(f"factor of safety {found['factor_of_safety']:.3g}", carved.Strength[0])
+        self.assertEqual(carved.Strength[0].startswith("holds"), found["holds"])
+        self.assertEqual(len([line for line in carved.Strength if "moves by" in line]), len(found["cases"]))
+        self.assertTrue(carved.ShowStress)
+        self.assertEqual(len(carved.FaceColors), carved.Mesh.CountFacets)
+        self.assertNotEqual(carved.FaceColors, pattern)
+        carved.ShowStress = False
+        self.assertEqual(carved.FaceColors, pattern)
+        carved.ShowStress = True
+        self.assertEqual(self.reopened().Carved.FaceColors, self.document.Carved.StressColors)
+        # Another result has a strength of its own.
+        carved = self.document.Carved
+        fw.change(carved, synthesis_seed=5)
+        fw.update(carved)
+        self.assertEqual((carved.Strength, len(carved.StressColors)), ([], 0))
+        self.assertEqual(carved.FaceColors, carved.PatternColors)

@@ -261,3 +261,15 @@ class Exchange(WindowTest):
         with unittest.mock.patch.object(QtWidgets.QFileDialog, "getSaveFileName", return_value=(str(path), "")):
             Gui.runCommand("Fretwork_Export", 0)
         self.assertEqual(path.read_bytes(), Path(carved.Package).read_bytes())
+
+    def test_strength_is_checked_beside_the_window(self):
+        carved = fw.carve(self.shape(), pattern="hexagons", **QUICK)
+        self.select(carved)
+        Gui.runCommand("Fretwork_Strength", 0)
+        self.assertEqual(len(background.jobs()), 1)
+        wait_until(lambda: carved.ShowStress and not background.jobs())
+        self.assertIn("factor of safety", carved.Strength[0])
+        self.assertEqual(carved.State, "carved")
+        Gui.Selection.clearSelection()
+        self.show()
+        self.picture("strength")
