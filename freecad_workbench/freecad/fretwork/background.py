@@ -99,13 +99,15 @@ class _Documents:
 
     def slotUndoDocument(self, document) -> None:
         # A result that came after its step was closed is no part of the step.
-        QtCore.QTimer.singleShot(0, lambda: _refresh(document))
+        name = document.Name
+        QtCore.QTimer.singleShot(0, lambda: _refresh(name))
 
     slotRedoDocument = slotUndoDocument
 
 
-def _refresh(document) -> None:
-    for obj in document.Objects:
+def _refresh(name: str) -> None:
+    document = App.listDocuments().get(name)
+    for obj in document.Objects if document else ():
         refresh = getattr(getattr(obj, "Proxy", None), "refresh", None)
         if refresh:
             refresh(obj)

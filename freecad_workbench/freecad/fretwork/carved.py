@@ -22,6 +22,7 @@ from .preferences import engine
 from .results import Result, make, remembered
 from .setting_properties import OWN_PICTURE, PICTURES, SettingProperty, changed_values, setting_properties
 from .source import model_of, region_of, same_placement
+from .stateless import Stateless
 from .strength_check import Strength
 from .translation import noop
 
@@ -90,7 +91,7 @@ def properties_of_settings() -> list[SettingProperty]:
     return setting_properties(now.schema, [pattern.name for pattern in now.patterns])
 
 
-class Carved:
+class Carved(Stateless):
     """What makes a document object a carved one."""
 
     Type = TYPE
@@ -124,15 +125,6 @@ class Carved:
             self._add_settings(obj)
         except EngineError as missing:
             App.Console.PrintWarning(f"{obj.Label}: {missing}\n")
-
-    def dumps(self):
-        return None
-
-    def loads(self, state) -> None:
-        pass
-
-    # FreeCAD 0.20 calls them by these names.
-    __getstate__, __setstate__ = dumps, loads
 
     # --- the workbench calls these ---
 

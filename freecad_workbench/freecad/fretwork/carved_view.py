@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from .qt import QtCore
 from .resources import icon
+from .stateless import Stateless
 
 
-class CarvedView:
+class CarvedView(Stateless):
     """What makes a view provider that of a carved object."""
 
     def __init__(self, view):
@@ -60,15 +61,6 @@ class CarvedView:
         if source and source.ViewObject:
             source.ViewObject.Visibility = True
         return True
-
-    def dumps(self):
-        return None
-
-    def loads(self, state) -> None:
-        pass
-
-    # FreeCAD 0.20 calls them by these names.
-    __getstate__, __setstate__ = dumps, loads
 
     def _show_colors_soon(self, view) -> None:
         # FreeCAD paints a changed mesh in one colour after it has told of the change, once for all changes at a time.

@@ -111,7 +111,7 @@ class Panel(WindowTest):
         self.assertTrue(self.widget("FretworkStop").isEnabled())
         wait(0.3)
         self.widget("FretworkStop").click()
-        wait_until(lambda: not background.jobs(), 5)
+        wait_until(lambda: not background.jobs())
         self.assertEqual(carved.Proxy.request(carved).values["shell.resolution"], 256)
         self.press(QtWidgets.QDialogButtonBox.Cancel)
 
@@ -132,7 +132,7 @@ class Panel(WindowTest):
         wait_until(lambda: carved.ResultKey != before)
         self.press(QtWidgets.QDialogButtonBox.Cancel)
         self.assertEqual(carved.SynthesisScale, 1.0)
-        wait_until(lambda: carved.ResultKey == before and carved.State == "draft", 5)
+        wait_until(lambda: carved.ResultKey == before and carved.State == "draft")
 
 
 class Runs(WindowTest):
@@ -156,12 +156,12 @@ class Runs(WindowTest):
         carved = self.carved()
         self.show()
         for _ in range(2):
-            wait_until(lambda: _shown_colors(carved) == carved.Mesh.CountFacets, 5)
+            wait_until(lambda: _shown_colors(carved) == carved.Mesh.CountFacets)
             carved.ExemplarPattern = "waves"
             self.document.recompute()
             wait_until(lambda: carved.State == "draft" and not background.job_of(carved))
         carved = self.reopened().Carved
-        wait_until(lambda: _shown_colors(carved) == carved.Mesh.CountFacets, 5)
+        wait_until(lambda: _shown_colors(carved) == carved.Mesh.CountFacets)
 
     def test_stopping_leaves_the_object_as_it_was(self):
         carved = self.carved()
@@ -175,7 +175,7 @@ class Runs(WindowTest):
         self.show()
         self.picture("progress")
         Gui.runCommand("Fretwork_Stop", 0)
-        wait_until(lambda: not background.job_of(carved), 5)
+        wait_until(lambda: not background.job_of(carved))
         self.assertEqual(carved.Mesh.CountFacets, triangles)
 
     def test_a_failure_is_told_and_the_window_goes_on(self):
@@ -191,7 +191,7 @@ class Runs(WindowTest):
         self.document.recompute()
         self.assertEqual(len(background.jobs()), 1)
         self.document.removeObject(carved.Name)
-        wait_until(lambda: not background.jobs(), 5)
+        wait_until(lambda: not background.jobs())
         self.assertEqual([obj.Name for obj in self.document.Objects], ["Box"])
 
     def test_a_document_that_is_closed_takes_its_runs_along(self):
@@ -201,7 +201,7 @@ class Runs(WindowTest):
         self.assertEqual(len(background.jobs()), 1)
         App.closeDocument(self.document.Name)
         self.document = App.newDocument("FretworkTest")
-        wait_until(lambda: not background.jobs(), 5)
+        wait_until(lambda: not background.jobs())
 
     def test_undo_after_a_late_result_shows_what_belongs_to_the_settings(self):
         self.document.UndoMode = 1
@@ -215,9 +215,9 @@ class Runs(WindowTest):
         self.assertNotEqual(carved.ResultKey, first)
         self.document.undo()
         self.assertEqual(carved.SynthesisSeed, 1)
-        wait_until(lambda: carved.ResultKey == first, 5)
+        wait_until(lambda: carved.ResultKey == first)
         self.document.redo()
-        wait_until(lambda: carved.ResultKey != first, 5)
+        wait_until(lambda: carved.ResultKey != first)
 
 
 def _shown_colors(obj) -> int:
