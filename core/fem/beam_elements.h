@@ -30,10 +30,16 @@ class BeamElements {
     /// |s1| + |s2| + |s3| in MPa for the displacements (24) of a beam's corners; largest over its Gauss points.
     [[nodiscard]] double beam_score_mpa(std::size_t beam, const Eigen::Matrix<double, 24, 1>& displacements_mm) const;
 
+    /// Stress at the Gauss points, six rows each, for the displacements of the beam's corners.
+    using StressOperators = Eigen::Matrix<double, 48, 24>;
+    [[nodiscard]] const StressOperators& stress_operators(std::size_t beam) const { return beam_stress_[beam]; }
+
+    /// Folds, so that a frame link stands for it: its operators give forces of its two ends instead.
+    [[nodiscard]] bool is_link(std::size_t beam) const { return is_link_[beam] != 0; }
+
   private:
     using WedgeStiffness = Eigen::Matrix<double, 18, 18>;
     using BeamStiffness = Eigen::Matrix<double, 24, 24>;
-    using StressOperators = Eigen::Matrix<double, 48, 24>;  ///< eight Gauss points, or the forces of a link's two ends
 
     ElementNodes nodes_;
     std::vector<WedgeStiffness> wedge_stiffness_;
@@ -41,7 +47,7 @@ class BeamElements {
     std::vector<StressOperators> beam_stress_;
     std::vector<BeamStiffness> tie_stiffness_;
     std::vector<BeamSection> section_;
-    std::vector<std::uint8_t> is_link_;  ///< per beam: folds, so that a frame link stands for it
+    std::vector<std::uint8_t> is_link_;  ///< per beam
 };
 
 }  // namespace fretwork

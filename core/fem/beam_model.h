@@ -7,20 +7,12 @@
 #include <vector>
 
 #include "core/base/run_control.h"
-#include "core/fem/facing_sheets.h"
+#include "core/fem/beam_system.h"
 #include "core/fem/force_profile.h"
 #include "core/fem/material.h"
 #include "core/graph/abstract_graph.h"
 
 namespace fretwork {
-
-struct BeamModelSettings {
-    double thickness_mm = 2.0;              ///< final wall
-    double soft_factor = 1e-3;              ///< rho_min, of empty edges
-    double bridge_half_width_voxels = 3.0;  ///< of an edge that is empty now, once it is solid: r_pattern
-    /// Of `facing_voxels`: where walls of opposite sheets have grown together, their samples are tied. Empty: nowhere.
-    std::vector<VoxelIndex> facing;
-};
 
 /// Section 5.2.1. Wedges are always solid, beams have stiffness 1 or rho_min times their own. A beam's
 /// own stiffness is that of its hexahedron times the width of the material it stands for
@@ -28,7 +20,7 @@ struct BeamModelSettings {
 class BeamModel {
   public:
     /// Builds geometry and element matrices, orders the equations. References must outlive the model.
-    /// Load cases with the same supports share a factorisation.
+    /// Load cases with the same supports share a factorisation. Worst cases are those of the pattern as it is now.
     /// \param half_width_voxels  of `beam_half_widths`
     /// \throws InvalidSetting  material out of range (`solid_elements.h`).
     /// \throws SolverFailure   no memory.

@@ -26,9 +26,16 @@ struct LoadCase {
     std::vector<VoxelIndex> fixed;  ///< voxels that cannot move in this case
 };
 
+/// Loads that nobody knows: those that a pattern bears worst.
+struct WorstCaseSettings {
+    int regions = 0;       ///< weak ones that a case is looked for; 0: none
+    double total_n = 0.0;  ///< of all pushes of a case
+};
+
 /// Several cases at once; an edge's score is the maximum over them.
 struct ForceProfile {
     std::vector<LoadCase> cases;
+    WorstCaseSettings worst = {};  ///< cases that follow from the pattern (`worst_cases.h`), besides
 };
 
 /// "(3, -2, 40) mm": for the names of cases.

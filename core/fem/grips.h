@@ -9,7 +9,7 @@
 
 namespace fretwork {
 
-/// Pinches at places spread over the surface, as Stava et al. 2012 look for them: two places that face away from each
+/// Pinches at places spread over the surface, as in \cite stava2012stress: two places that face away from each
 /// other, the way between them within the friction cone (coefficient 0.5) of both normals. Each finger covers a patch
 /// of 5 mm radius, at most a tenth of the longest side. The two forces are opposite and act along the line through the
 /// middles of their patches: they sum up to no force and no moment.

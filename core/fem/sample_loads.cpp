@@ -43,15 +43,6 @@ void add_patch(const SurfaceVoxels& shell, const AbstractGraph& graph, const Pat
     }
 }
 
-/// Pieces of the abstract graph over edges of either state, named by their lowest sample.
-std::vector<SampleIndex> piece_of_samples(const AbstractGraph& graph) {
-    DisjointSets pieces(graph.samples.size());
-    for (const AbstractEdge& edge : graph.edges) pieces.unite(edge.a, edge.b);
-    std::vector<SampleIndex> piece(graph.samples.size());
-    for (SampleIndex s = 0; s < piece.size(); ++s) piece[s] = pieces.find(s);
-    return piece;
-}
-
 void hold_lowest_tenth(const SurfaceVoxels& shell, const AbstractGraph& graph, const std::vector<SampleIndex>& piece,
                        const std::vector<std::uint8_t>& held, std::vector<std::uint8_t>& fixed) {
     const std::size_t n = graph.samples.size();
@@ -93,6 +84,14 @@ std::vector<std::uint8_t> fixed_samples(const SurfaceVoxels& shell, const Abstra
 }
 
 }  // namespace
+
+std::vector<SampleIndex> piece_of_samples(const AbstractGraph& graph) {
+    DisjointSets pieces(graph.samples.size());
+    for (const AbstractEdge& edge : graph.edges) pieces.unite(edge.a, edge.b);
+    std::vector<SampleIndex> piece(graph.samples.size());
+    for (SampleIndex s = 0; s < piece.size(); ++s) piece[s] = pieces.find(s);
+    return piece;
+}
 
 SampleLoads loads_on_samples(const SurfaceVoxels& shell, const SolidStates& solid, const AbstractGraph& graph,
                              const LoadCase& load_case, const Material& material, double thickness_mm) {

@@ -10,6 +10,9 @@
 
 namespace fretwork {
 
+/// Pieces of the abstract graph over edges of either state, named by their lowest sample.
+std::vector<SampleIndex> piece_of_samples(const AbstractGraph& graph);
+
 struct SampleLoads {
     std::vector<Vec3> force_n;        ///< per sample
     std::vector<std::uint8_t> fixed;  ///< per sample, nonzero for those that cannot move

@@ -135,9 +135,14 @@ std::vector<LoadCase> cases_of_profile(const TriangleMesh& mesh, const SurfaceVo
     return cases;
 }
 
-ForceProfile with_supports_removed(const SurfaceVoxels& shell, const std::vector<HeldCase>& held) {
+ForceProfile profile_of(const std::vector<HeldCase>& held) {
     ForceProfile profile;
     for (const HeldCase& one : held) profile.cases.push_back(one.load_case);
+    return profile;
+}
+
+ForceProfile with_supports_removed(const SurfaceVoxels& shell, const std::vector<HeldCase>& held) {
+    ForceProfile profile = profile_of(held);
     for (const HeldCase& one : held)
         for (LoadCase& without : cases_without_a_support(shell, one.load_case, one.supports))
             profile.cases.push_back(std::move(without));
@@ -172,9 +177,8 @@ ForceProfile intended_use(const TriangleMesh& mesh, const SurfaceVoxels& shell, 
     const std::vector<Support> feet = support_clusters(shell, base.fixed);
     std::vector<HeldCase> held;
     for (LoadCase& load_case : cases) held.push_back(hold(std::move(load_case), regions, settings, feet));
-    if (structure.remove_supports) return with_supports_removed(shell, held);
-    ForceProfile profile;
-    for (HeldCase& one : held) profile.cases.push_back(std::move(one.load_case));
+    ForceProfile profile = structure.remove_supports ? with_supports_removed(shell, held) : profile_of(held);
+    profile.worst = {structure.weak_regions, 2.0 * structure.handling_force_n};
     return profile;
 }
 

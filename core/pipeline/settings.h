@@ -109,7 +109,8 @@ struct StructureOptions {
     std::optional<double> drop_factor;     ///< weights that act at once when the object lands
     std::optional<double> drop_height_mm;  ///< or what it falls through, coming to rest over `drop_stop_mm`
     double drop_stop_mm = 2.0;
-    int grips = 0;  ///< pinches at places that face away from each other, a case each
+    int grips = 0;                 ///< pinches at places that face away from each other, a case each
+    int weak_regions = 0;          ///< of the pattern, each a case: what it bears worst
     bool remove_supports = false;  ///< each case also without each of its supports
     double fixed_share = 0.1;
     std::optional<double> pattern_radius_mm;

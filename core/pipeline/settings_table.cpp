@@ -314,8 +314,9 @@ void add_structure(std::vector<SettingInfo>& t) {
                     "Forces to withstand; auto takes [[loads]] where given, else handling."));
     t.push_back(row("structure.gravity", FIELD(structure.gravity), "1", {},
                     "Direction in which the object's weight pulls, [x, y, z]."));
-    t.push_back(row("structure.handling_force_n", FIELD(structure.handling_force_n), "N", above(0, 10000),
-                    "Force of each pinch and push, of the handling profile and of structure.grips."));
+    t.push_back(
+        row("structure.handling_force_n", FIELD(structure.handling_force_n), "N", above(0, 10000),
+            "Force of each finger that pinches or pushes: of the handling profile, of grips; half of a worst case."));
     t.push_back(row("structure.drop_factor", FIELD(structure.drop_factor), "1", between(1, 1e5),
                     "One more case: the object lands on what holds it, under this many times its weight.",
                     "from structure.drop_height_mm, else no such case"));
@@ -326,6 +327,9 @@ void add_structure(std::vector<SettingInfo>& t) {
                     "Way over which it comes to rest after structure.drop_height_mm."));
     t.push_back(row("structure.grips", FIELD(structure.grips), "1", between(0, 64),
                     "So many more cases: two fingers pinch it at opposite places spread over the surface."));
+    t.push_back(row("structure.weak_regions", FIELD(structure.weak_regions), "1", between(0, 32),
+                    "So many more cases, without knowing the load: for each of the weakest regions of the pattern the "
+                    "pressure, as strong in all as a pinch, that it bears worst."));
     t.push_back(row("structure.remove_supports", FIELD(structure.remove_supports), "1", {},
                     "Each case also without each of its supports in turn: [[fixtures]], else feet it stands on."));
     t.push_back(row("structure.fixed_share", FIELD(structure.fixed_share), "1", above(0, 0.9),

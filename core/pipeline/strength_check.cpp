@@ -1,8 +1,10 @@
 #include "core/pipeline/strength_check.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/base/error.h"
+#include "core/pipeline/carved_worst_cases.h"
 #include "core/pipeline/intended_use.h"
 #include "core/pipeline/keep_regions.h"
 #include "core/pipeline/prepare_surface.h"
@@ -38,6 +40,19 @@ StrengthCheck check(const TriangleMesh& carved, const StrengthCheckSettings& set
     }
 }
 
+ForceProfile with_worst_cases(const SurfaceLoads& loads, const VoxelModel& model, const Material& material,
+                              const RunControl& run) {
+    ForceProfile profile = loads.profile;
+    if (profile.worst.regions == 0) return profile;
+    if (loads.of_carved)
+        throw InvalidInput(
+            "structure.weak_regions: what the pattern bears worst is looked for on the model that was carved, which "
+            "is not known");
+    std::ranges::move(carved_worst_cases(loads.shell, model, profile.worst, material, run),
+                      std::back_inserter(profile.cases));
+    return profile;
+}
+
 }  // namespace
 
 SurfaceLoads loads_on_surface(const TriangleMesh& surface, const Settings& settings, int resolution,
@@ -59,7 +74,9 @@ SurfaceLoads loads_of_source(const TriangleMesh& model, const std::vector<NamedT
 
 SurfaceLoads loads_of_carved(const TriangleMesh& carved, const Settings& settings, int resolution,
                              const RunControl& run) {
-    return loads_on_surface(carved, settings, resolution, run);
+    SurfaceLoads loads = loads_on_surface(carved, settings, resolution, run);
+    loads.of_carved = true;
+    return loads;
 }
 
 StrengthCheckSettings strength_check_settings(const Settings& settings, std::uint64_t max_memory_bytes) {
@@ -80,8 +97,9 @@ void keep_report_only(StrengthCheck& check) {
 
 StrengthCheck check_strength(const TriangleMesh& carved, const SurfaceLoads& loads,
                              const StrengthCheckSettings& settings, const RunControl& run) {
-    return check(carved, settings, run,
-                 [&](const VoxelModel& model) { return cases_of(loads.profile, loads.shell, model, run); });
+    return check(carved, settings, run, [&](const VoxelModel& model) {
+        return cases_of(with_worst_cases(loads, model, settings.analysis.material, run), loads.shell, model, run);
+    });
 }
 
 StrengthCheck check_own_weight(const TriangleMesh& carved, double fixed_share, const StrengthCheckSettings& settings,

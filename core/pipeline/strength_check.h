@@ -19,6 +19,7 @@ namespace fretwork {
 struct SurfaceLoads {
     SurfaceVoxels shell;
     ForceProfile profile;
+    bool of_carved = false;  ///< of the carved surface: the model is not known
 };
 
 /// The model that was carved, as it was read: its regions, faces and parts are those of the spec.
@@ -58,7 +59,9 @@ struct StrengthCheck {
 void keep_report_only(StrengthCheck& check);
 
 /// Voxels of the asked size, or larger ones where those would take more than the memory allows.
-/// \throws  as make_voxel_model and analyze_strength; MemoryLimit where even 32 voxels are too many
+/// Worst cases, if the profile asks for some, are those of the carved pattern, found anew.
+/// \throws  as make_voxel_model and analyze_strength; MemoryLimit where even 32 voxels are too many; InvalidInput where
+///          worst cases are asked for and the model is not known
 StrengthCheck check_strength(const TriangleMesh& carved, const SurfaceLoads& loads,
                              const StrengthCheckSettings& settings, const RunControl& run = {});
 

@@ -64,7 +64,8 @@ void check_profile(const SurfaceVoxels& shell, const ForceProfile& profile) {
 }
 
 bool is_self_weight_alone(const ForceProfile& profile) {
-    return std::ranges::all_of(profile.cases, [](const LoadCase& load_case) { return load_case.loads.empty(); });
+    return profile.worst.regions == 0 &&
+           std::ranges::all_of(profile.cases, [](const LoadCase& load_case) { return load_case.loads.empty(); });
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "core/fem/beam_wedge_mesh.h"
 #include "core/fem/beam_widths.h"
 #include "core/fem/facing_sheets.h"
+#include "core/fem/pattern_case.h"
 #include "core/fem/sample_loads.h"
 #include "core/fem/solid_elements.h"
 #include "core/graph/connect_samples.h"
@@ -23,42 +24,15 @@
 namespace fretwork {
 namespace {
 
-using testing::blobs;
+using testing::blob_case;
+using testing::Case;
 using testing::make_box;
+using testing::make_case;
 using testing::make_cylinder;
 using testing::make_icosphere;
 using testing::make_linked_tori;
 using testing::make_square;
-
-struct Case {
-    SurfaceVoxels shell;
-    SolidStates solid;
-    AbstractGraph graph;
-};
-
-Case make_case(const TriangleMesh& mesh, int resolution, const SolidStates* states, std::size_t samples) {
-    Case c;
-    c.shell = voxelize(mesh, {.resolution = resolution});
-    c.solid = states != nullptr ? *states : SolidStates(c.shell.size(), SolidState::kSolid);
-    SampleSettings sampling;
-    sampling.target = samples;
-    sampling.least = 1;
-    std::vector<VoxelIndex> chosen =
-        poisson_samples(c.shell.adjacency, connected_components(c.shell.adjacency), c.solid, sampling).voxels;
-    c.graph = connect_samples(c.shell.adjacency, c.solid, std::move(chosen), ExtendFrom::kTree);
-    return c;
-}
-
-Case blob_case(const TriangleMesh& mesh, int resolution, std::uint64_t seed, std::size_t samples) {
-    const SolidStates states = blobs(voxelize(mesh, {.resolution = resolution}), 12.0, seed);
-    return make_case(mesh, resolution, &states, samples);
-}
-
-std::vector<EdgeState> states_of(const AbstractGraph& graph) {
-    std::vector<EdgeState> states;
-    for (const AbstractEdge& edge : graph.edges) states.push_back(edge.state);
-    return states;
-}
+using testing::states_of;
 
 template <int N, std::size_t M>
 Corners<N> corners_of(const BeamWedgeMesh& mesh, const std::array<NodeIndex, M>& nodes) {

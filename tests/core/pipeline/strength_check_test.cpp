@@ -1,8 +1,11 @@
 #include "core/pipeline/strength_check.h"
 
+#include <array>
 #include <catch2/catch.hpp>
+#include <vector>
 
 #include "core/base/error.h"
+#include "support/block_mesh.h"
 #include "support/make_meshes.h"
 
 namespace fretwork {
@@ -97,6 +100,38 @@ TEST_CASE("strength check: a drop of n weights stresses n times as much, a taken
     // A cantilever bends 48 times as far as a beam that is held at both ends: q L^4 / 8 against q L^4 / 384.
     CHECK(found[2].max_displacement_mm > 30.0 * found[0].max_displacement_mm);
     CHECK(found[2].max_displacement_mm < 60.0 * found[0].max_displacement_mm);
+}
+
+TEST_CASE("strength check: worst cases are those of the carved object, in balance, and need the model",
+          "[strength][loads]") {
+    const TriangleMesh model = make_box(Vec3::Zero(), Vec3(40, 40, 40), {8, 8, 8});
+    // Walls of 3 mm; the front has a wide window, which leaves narrow posts.
+    const std::vector<double> lines = {0, 3, 4, 36, 37, 40};
+    const TriangleMesh carved =
+        block_mesh({{lines, lines, lines}, {{{3, 1, 32, 1, 3}, {3, 1, 32, 1, 3}, {3, 1, 32, 1, 3}}}},
+                   [](const std::array<int, 3>& at) {
+                       const auto inner = [](int i) { return i >= 1 && i <= 3; };
+                       const bool hollow = inner(at[0]) && inner(at[1]) && inner(at[2]);
+                       const bool window = at[1] == 0 && inner(at[0]) && inner(at[2]);
+                       return hollow || window ? Block::empty() : Block::solid();
+                   });
+    Settings settings;
+    settings.structure.profile = LoadProfile::kGravity;
+    settings.structure.weak_regions = 3;
+    settings.structure.handling_force_n = 15.0;
+    const SurfaceLoads loads = loads_of_source(model, {}, settings, 60);
+    CHECK(loads.profile.worst.regions == 3);
+    const StrengthReport report = check_strength(carved, loads, settings_at(60)).report;
+    REQUIRE(report.cases.size() == 4);
+    for (std::size_t c = 1; c < 4; ++c) {
+        CAPTURE(report.cases[c].name);
+        CHECK(report.cases[c].name.starts_with("worst case at ("));
+        // 30 N act, and next to nothing is left for what holds.
+        CHECK(report.cases[c].applied_n.norm() < 0.3);
+        CHECK(report.cases[c].stress_sum.max_pa > 100.0 * report.cases[0].stress_sum.max_pa);
+    }
+    CHECK_THROWS_WITH(check_strength(carved, loads_of_carved(carved, settings, 60), settings_at(60)),
+                      Catch::Contains("structure.weak_regions"));
 }
 
 }  // namespace
