@@ -33,6 +33,7 @@ VIEWS = {
     "10_make": (["10_leafveins", "10_scales"], []),
     "11_slice": (["11_slice"], []),
     "12_marks": (["12_marks"], ["--elevation", "25"]),
+    "13_rough_use": (["13_rough_use"], ["--colour", "bridges"]),
 }
 
 # Figures: name, model, further options of `carve`, options of `render`.

@@ -16,19 +16,19 @@ constexpr int kMostSteps = 20000;
 
 }  // namespace
 
-LinearProgram::LinearProgram(Eigen::MatrixXd A, Eigen::VectorXd b) : A_(std::move(A)), b_(std::move(b)) {
+LinearProgram::LinearProgram(Eigen::MatrixXd A, Eigen::VectorXd b) : rows_(std::move(A)), b_(std::move(b)) {
     for (Eigen::Index i = 0; i < b_.size(); ++i) {
         if (b_[i] < 0.0) {
-            A_.row(i) *= -1.0;
+            rows_.row(i) *= -1.0;
             b_[i] *= -1.0;
         }
-        basis_.push_back(A_.cols() + i);
+        basis_.push_back(rows_.cols() + i);
     }
     value_ = b_;
-    improve(Eigen::VectorXd::Zero(A_.cols()), -1.0);
+    improve(Eigen::VectorXd::Zero(rows_.cols()), -1.0);
     double artificial = 0.0;
     for (Eigen::Index i = 0; i < b_.size(); ++i)
-        if (basis_[static_cast<std::size_t>(i)] >= A_.cols()) artificial += value_[i];
+        if (basis_[static_cast<std::size_t>(i)] >= rows_.cols()) artificial += value_[i];
     feasible_ = artificial <= kFeasible * (1.0 + b_.sum());
 }
 
@@ -36,20 +36,20 @@ Eigen::VectorXd LinearProgram::maximize(const Eigen::VectorXd& c) {
     if (!feasible_) throw SolverFailure("linear program: no solution meets its equations");
     const double size = c.cwiseAbs().maxCoeff();
     if (size > 0.0) improve(c / size, 0.0);
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(A_.cols());
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(rows_.cols());
     for (std::size_t i = 0; i < basis_.size(); ++i)
-        if (basis_[i] < A_.cols()) x[basis_[i]] = std::max(0.0, value_[static_cast<Eigen::Index>(i)]);
+        if (basis_[i] < rows_.cols()) x[basis_[i]] = std::max(0.0, value_[static_cast<Eigen::Index>(i)]);
     return x;
 }
 
 Eigen::VectorXd LinearProgram::column(Eigen::Index j) const {
-    return j < A_.cols() ? Eigen::VectorXd(A_.col(j))
-                         : Eigen::VectorXd(Eigen::VectorXd::Unit(b_.size(), j - A_.cols()));
+    return j < rows_.cols() ? Eigen::VectorXd(rows_.col(j))
+                            : Eigen::VectorXd(Eigen::VectorXd::Unit(b_.size(), j - rows_.cols()));
 }
 
 /// The column that gains most per unit, or the first that gains; -1 where none does. Artificial ones stay out.
 Eigen::Index LinearProgram::entering(const Eigen::VectorXd& cost, const Eigen::VectorXd& prices, bool first) const {
-    const Eigen::VectorXd gain = cost - A_.transpose() * prices;
+    const Eigen::VectorXd gain = cost - rows_.transpose() * prices;
     Eigen::Index best = -1;
     for (Eigen::Index j = 0; j < gain.size(); ++j) {
         if (gain[j] <= kZero || (best >= 0 && gain[j] <= gain[best])) continue;
@@ -65,7 +65,7 @@ Eigen::Index LinearProgram::leaving(const Eigen::VectorXd& step, bool first_phas
     Eigen::Index best = -1;
     double least = std::numeric_limits<double>::infinity();
     for (Eigen::Index i = 0; i < step.size(); ++i) {
-        const bool stuck = !first_phase && basis_[static_cast<std::size_t>(i)] >= A_.cols();
+        const bool stuck = !first_phase && basis_[static_cast<std::size_t>(i)] >= rows_.cols();
         if (stuck && std::abs(step[i]) > kFeasible) return i;
         if (stuck || step[i] <= kZero) continue;
         const double ratio = std::max(0.0, value_[i]) / step[i];
@@ -86,13 +86,13 @@ void LinearProgram::improve(const Eigen::VectorXd& cost, double artificial_cost)
         for (Eigen::Index i = 0; i < rows; ++i) {
             const Eigen::Index j = basis_[static_cast<std::size_t>(i)];
             basis.col(i) = column(j);
-            basis_cost[i] = j < A_.cols() ? cost[j] : artificial_cost;
+            basis_cost[i] = j < rows_.cols() ? cost[j] : artificial_cost;
         }
         const Eigen::PartialPivLU<Eigen::MatrixXd> lu(basis);
         value_ = lu.solve(b_);
         const Eigen::Index enters = entering(cost, lu.transpose().solve(basis_cost), steps > kStepsBeforeBland);
         if (enters < 0) return;
-        const Eigen::Index leaves = leaving(lu.solve(A_.col(enters)), artificial_cost != 0.0);
+        const Eigen::Index leaves = leaving(lu.solve(rows_.col(enters)), artificial_cost != 0.0);
         if (leaves < 0) throw SolverFailure("linear program: the aim has no upper bound");
         basis_[static_cast<std::size_t>(leaves)] = enters;
     }

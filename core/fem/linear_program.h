@@ -27,7 +27,7 @@ class LinearProgram {
     [[nodiscard]] Eigen::Index leaving(const Eigen::VectorXd& step, bool first_phase) const;
     void improve(const Eigen::VectorXd& cost, double artificial_cost);
 
-    Eigen::MatrixXd A_;
+    Eigen::MatrixXd rows_;
     Eigen::VectorXd b_;
     std::vector<Eigen::Index> basis_;  ///< columns of A; A's columns + i for the artificial one of row i
     Eigen::VectorXd value_;            ///< of the basis

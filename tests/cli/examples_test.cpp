@@ -87,6 +87,16 @@ TEST_CASE("examples: every numbered script runs and makes valid models", "[cli][
         CHECK(slurp(out / "05_orientation_up.3mf") != slurp(out / "05_orientation_free.3mf"));
         CHECK(slurp(out / "05_orientation_up.3mf") != slurp(out / "05_orientation_vector.3mf"));
     }
+    if (name == "13_rough_use") {
+        std::vector<std::string> cases;
+        for (const auto& found : nlohmann::json::parse(slurp(out / "13_strength.json"))["strength"]["cases"])
+            cases.push_back(found["name"]);
+        REQUIRE(cases.size() > 10);
+        CHECK(cases[0] == "gravity");
+        CHECK(cases[1] == "drop");
+        CHECK(cases[2].starts_with("grip at"));
+        CHECK(cases.back().starts_with("worst case at"));
+    }
     if (name == "12_marks") CHECK(slurp(out / "12_marks.gcode").find(";LAYER_CHANGE") != std::string::npos);
     if (name == "11_slice")
         CHECK(nlohmann::json::parse(slurp(out / "11_slice.json"))["slicing"]["layers"].get<int>() > 100);
