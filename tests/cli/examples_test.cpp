@@ -90,7 +90,7 @@ TEST_CASE("examples: every numbered script runs and makes valid models", "[cli][
     if (name == "13_rough_use") {
         std::vector<std::string> cases;
         for (const auto& found : nlohmann::json::parse(slurp(out / "13_strength.json"))["strength"]["cases"])
-            cases.push_back(found["name"]);
+            cases.push_back(found["name"].get<std::string>());
         REQUIRE(cases.size() > 10);
         CHECK(cases[0] == "gravity");
         CHECK(cases[1] == "drop");
