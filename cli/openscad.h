@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/scratch_folder.h"
 #include "core/base/run_control.h"
+#include "formats/scratch_folder.h"
 
 namespace fretwork::cli {
 

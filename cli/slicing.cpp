@@ -8,12 +8,12 @@
 
 #include "cli/child_process.h"
 #include "cli/files.h"
-#include "formats/scratch_folder.h"
 #include "core/base/error.h"
 #include "formats/cura_definition.h"
 #include "formats/gcode_reader.h"
 #include "formats/mesh_file.h"
 #include "formats/read_file.h"
+#include "formats/scratch_folder.h"
 #include "formats/sla_reader.h"
 
 namespace fretwork::cli {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "child_process.h"
-#include "formats/scratch_folder.h"
 #include "formats/read_file.h"
+#include "formats/scratch_folder.h"
 #include "markdown.h"
 
 namespace {

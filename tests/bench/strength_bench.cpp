@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "child_process.h"
-#include "formats/scratch_folder.h"
 #include "core/fem/beam_model.h"
 #include "core/fem/beam_widths.h"
 #include "core/graph/connect_samples.h"
@@ -27,6 +26,7 @@
 #include "core/shell/components.h"
 #include "core/strength/strength.h"
 #include "formats/mesh_file.h"
+#include "formats/scratch_folder.h"
 #include "markdown.h"
 
 namespace {

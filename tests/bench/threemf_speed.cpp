@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "child_process.h"
-#include "formats/scratch_folder.h"
 #include "core/pipeline/memory_use.h"
 #include "formats/carved_threemf_writer.h"
 #include "formats/mesh_file.h"
 #include "formats/read_file.h"
+#include "formats/scratch_folder.h"
 #include "formats/volumetric_reader.h"
 #include "markdown.h"
 #include "speed_model.h"
