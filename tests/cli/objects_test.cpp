@@ -164,39 +164,6 @@ TEST_CASE("cli: [[object]] gives an object settings of its own", "[cli][threemf]
     CHECK(bad.err.find("bad.toml: line 3") != bad.err.npos);
 }
 
-TEST_CASE("cli: verify judges every object of a plate on its own", "[cli][threemf]") {
-    const TemporaryFolder folder;
-    // Two posts 60 mm apart; where the loads lie is said in the coordinates of each.
-    const TriangleMesh post = make_box(Vec3::Zero(), Vec3(4, 4, 40));
-    spit(folder / "posts.3mf",
-         make_package(
-             make_model(make_mesh_object(1, post, "name=\"firm\"") + make_mesh_object(2, post, "name=\"soft\""),
-                        "<item objectid=\"1\"/><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 60 0 0\"/>")));
-    spit(folder / "loads.toml",
-         "[structure]\nmaterial = \"PLA\"\n[[loads]]\nname = \"top\"\nshape = \"box\"\nmin_mm = [-1, -1, 38]\n"
-         "max_mm = [5, 5, 41]\nforce_n = [20, 0, 0]\n[[object]]\nmatch = \"soft\"\nstructure.material = \"PETG\"\n");
-    const ProgramResult run =
-        run_program({"verify", folder / "posts.3mf", "--spec", folder / "loads.toml", "--resolution", "80", "--json"});
-    CAPTURE(run.err);
-    REQUIRE(run.exit_code == 0);
-    const Json strength = Json::parse(run.out)["strength"];
-    REQUIRE(strength["objects"].size() == 2);
-    const auto factor = [&](std::size_t i) { return strength["objects"][i]["factor_of_safety"].get<double>(); };
-    CHECK(strength["objects"][0]["object"] == "\"firm\"");
-    CHECK(strength["objects"][0]["cases"][0]["applied_n"][0].get<double>() == Approx(20.0));
-    CHECK(strength["objects"][0]["voxels"] == 8 * 8 * 80);
-    // The same stress, and 40 or 30 MPa to bear it.
-    CHECK(factor(0) == Approx(factor(1) * 40.0 / 30.0).epsilon(0.02));
-    CHECK(strength["object"] == "\"soft\"");
-    CHECK(strength["factor_of_safety"].get<double>() == factor(1));
-    CHECK(run.err.find("fault: \"soft\": breaks under") != run.err.npos);
-    CHECK(run.err.find("fault: \"firm\": breaks under") != run.err.npos);
-    const ProgramResult colors = run_program({"verify", folder / "posts.3mf", "--spec", folder / "loads.toml",
-                                              "--resolution", "40", "--stress", folder / "stress.ply"});
-    CHECK(colors.exit_code == 1);
-    CHECK(colors.err.find("--stress: 2 objects are judged, expected one") != colors.err.npos);
-}
-
 TEST_CASE("cli: verify of a carved plate judges what was carved of it", "[cli][threemf]") {
     const TemporaryFolder folder;
     spit(folder / "in.3mf", three_boxes());
