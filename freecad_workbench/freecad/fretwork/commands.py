@@ -23,6 +23,10 @@ def _name(obj) -> str:
     return f"App.getDocument({obj.Document.Name!r}).getObject({obj.Name!r})"
 
 
+def _names(objects) -> str:
+    return f"[{', '.join(map(_name, objects))}]"
+
+
 def _run(*lines: str) -> None:
     """Runs Python, and shows it in the console and the report view."""
     for line in ("import freecad.fretwork as fw", *lines):
@@ -51,6 +55,13 @@ def _in_one_step(document, label: str, *lines: str, stays_open: bool = False) ->
         document.commitTransaction()
 
 
+class _OnCarved:
+    """A command on selected carved objects."""
+
+    def IsActive(self):
+        return bool(_selected_carved())
+
+
 class Carve:
     """Carves what is selected."""
 
@@ -76,15 +87,12 @@ class Carve:
                      f"Gui.getDocument({document.Name!r}).setEdit(carved.Name)", stays_open=True)  # fmt: skip
 
 
-class Update:
+class Update(_OnCarved):
     """Carves the selected objects in full."""
 
     def GetResources(self):
         return _resources("Update", noop("Fretwork_Update", "Carve in full"),
                           noop("Fretwork_Update", "Make the whole result for the present settings, beside FreeCAD"))
-
-    def IsActive(self):
-        return bool(_selected_carved())
 
     def Activated(self):
         for obj in _selected_carved():
@@ -108,7 +116,7 @@ class Stop:
             _run(f"fw.stop({_name(obj)})")
 
 
-class CheckStrength:
+class CheckStrength(_OnCarved):
     """Analyses the selected objects."""
 
     def GetResources(self):
@@ -116,23 +124,17 @@ class CheckStrength:
                           noop("Fretwork_Strength", "Analyse the carved object voxel by voxel under its loads, and show "
                                "its stress in colours"))  # fmt: skip
 
-    def IsActive(self):
-        return bool(_selected_carved())
-
     def Activated(self):
         for obj in _selected_carved():
             _try(f"fw.check_strength({_name(obj)}, wait=False)")
 
 
-class Export:
+class Export(_OnCarved):
     """Writes the 3MF of the selected objects."""
 
     def GetResources(self):
         return _resources("Export", noop("Fretwork_Export", "Export 3MF..."),
                           noop("Fretwork_Export", "Write the carved objects as 3MF, with colours, voxel data and settings"))  # fmt: skip
-
-    def IsActive(self):
-        return bool(_selected_carved())
 
     def Activated(self):
         from .qt import QtWidgets
@@ -142,10 +144,10 @@ class Export:
             Gui.getMainWindow(), translate("Export 3MF"), f"{objects[0].Label}.3mf", "3MF (*.3mf)"
         )
         if path:
-            _try(f"fw.export([{', '.join(map(_name, objects))}], {path!r})")
+            _try(f"fw.export({_names(objects)}, {path!r})")
 
 
-class OpenInSlicer:
+class OpenInSlicer(_OnCarved):
     """Hands the selected objects to a slicer."""
 
     def GetResources(self):
@@ -153,11 +155,8 @@ class OpenInSlicer:
                           noop("Fretwork_Slicer", "Open the carved objects in PrusaSlicer, OrcaSlicer, Bambu Studio or "
                                "Cura"))  # fmt: skip
 
-    def IsActive(self):
-        return bool(_selected_carved())
-
     def Activated(self):
-        _try(f"fw.open_in_slicer([{', '.join(map(_name, _selected_carved()))}])")
+        _try(f"fw.open_in_slicer({_names(_selected_carved())})")
 
 
 COMMANDS = {

@@ -33,7 +33,7 @@ class Task:
 
     request: CarveRequest
     draft: bool
-    folder: Path = field(default_factory=lambda: Path(tempfile.mkdtemp(prefix="run-", dir=_session_folder())))
+    folder: Path = field(default_factory=lambda: run_folder())
 
     def __post_init__(self):
         self.key = self.request.key()
@@ -44,7 +44,7 @@ class Task:
         """Arguments of the program, run after run."""
         return self._files.draft_steps() if self.draft else self._files.full_steps()
 
-    def done(self, _output: bytes = b"") -> Result:
+    def done(self, _output: bytes) -> Result:
         """Call once all steps have ended well. The result is remembered."""
         report = json.loads(self._files.summary.read_text(encoding="utf-8"))
         package = None if self.draft else self._files.package
@@ -75,12 +75,16 @@ def make(engine: Engine, request: CarveRequest, draft: bool, on_progress: OnProg
     known = remembered(request.key(), draft)
     if known:
         return known
-    task = Task(request, draft)
+    return run_to_end(engine, Task(request, draft), on_progress)
+
+
+def run_to_end(engine: Engine, task, on_progress: OnProgress | None = None):
+    """Runs the steps of a task, waiting for them, and gives what it makes of them. Raises EngineError."""
     try:
-        steps = task.steps
-        for number, arguments in enumerate(steps):
-            engine.run(arguments, Share(number, len(steps), on_progress) if on_progress else None)
-        return task.done()
+        output = b""
+        for number, arguments in enumerate(task.steps):
+            output = engine.run(arguments, Share(number, len(task.steps), on_progress) if on_progress else None)
+        return task.done(output)
     except BaseException:
         task.discard()
         raise
@@ -89,6 +93,11 @@ def make(engine: Engine, request: CarveRequest, draft: bool, on_progress: OnProg
 _MOST_REMEMBERED = 16
 _remembered: OrderedDict[tuple[str, bool], tuple[Result, Path]] = OrderedDict()
 _session: list[Path] = []
+
+
+def run_folder() -> Path:
+    """A folder for one run; those that are left go when FreeCAD ends."""
+    return Path(tempfile.mkdtemp(prefix="run-", dir=_session_folder()))
 
 
 def _session_folder() -> Path:

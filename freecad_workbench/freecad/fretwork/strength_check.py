@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import shutil
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 from .engine.engine import Engine
 from .engine.strength import strength_lines
 from .mesh_files import read_face_colors
+from .results import run_folder, run_to_end
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class StrengthTask:
     def __init__(self, package: Path, key: str):
         self.key = f"strength of {key}"
         self._of = key
-        self.folder = Path(tempfile.mkdtemp(prefix="fretwork-"))
+        self.folder = run_folder()
         self._colored = self.folder / "stress.ply"
         self.steps = [["verify", str(package), "--json", "--stress", str(self._colored), "--progress", "json"]]
 
@@ -46,8 +46,4 @@ class StrengthTask:
 
 def analyse(engine: Engine, package: Path, key: str) -> Strength:
     """The same, waiting for the end. Raises EngineError."""
-    task = StrengthTask(package, key)
-    try:
-        return task.done(engine.run(task.steps[0]))
-    finally:
-        task.discard()
+    return run_to_end(engine, StrengthTask(package, key))

@@ -60,20 +60,20 @@ class CarveFiles:
                 "--progress", "json"]  # fmt: skip
 
 
-def _file_name(name: str) -> str:
+def file_name(name: str) -> str:
     """A name that every file system takes; nothing that a shell or a slicer stumbles over."""
     return re.sub(r"[^\w.+-]+", "_", name).strip("._-") or "model"
 
 
 def lay_down(request: CarveRequest, folder: Path) -> CarveFiles:
     """Writes model, pictures and spec into a folder of their own."""
-    name = _file_name(request.model_name)
+    name = file_name(request.model_name)
     model = folder / f"{name}.{request.model_format}"
     model.write_bytes(request.model)
     values = dict(request.values)
     for key, (picture_name, data) in request.pictures.items():
         # Picture and mask may have the same name.
-        picture = folder / f"{key.split('.')[1]}_{_file_name(picture_name)}"
+        picture = folder / f"{key.split('.')[1]}_{file_name(picture_name)}"
         picture.write_bytes(data)
         values[key] = picture.name
     spec = folder / "spec.toml"

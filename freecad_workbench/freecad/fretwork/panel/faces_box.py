@@ -9,6 +9,7 @@ from ..qt import QtCore, QtWidgets
 from ..selection import source_behind
 from ..source import element_names, is_mesh, linked
 from ..translation import translate
+from .box import Box
 
 # Red, green, blue and transparency of picked faces.
 CARVE_COLOR, KEEP_COLOR = (0.91, 0.58, 0.36, 0.0), (0.45, 0.62, 0.81, 0.0)
@@ -69,16 +70,11 @@ class FacePicker(QtWidgets.QWidget):
         self._text.setText(", ".join(self.faces()) or self._none)
 
 
-class FacesBox(QtWidgets.QWidget):
+class FacesBox(Box):
     """Writes CarveFaces and KeepFaces. While faces are picked the source is seen, with its picked faces in colour."""
 
-    changed = QtCore.Signal()
-
     def __init__(self, obj):
-        super().__init__()
-        self.setWindowTitle(translate("Faces"))
-        self.setObjectName("FretworkFaces")
-        self._obj = obj
+        super().__init__(obj, "FretworkFaces", translate("Faces"))
         self._before: tuple | None = None
         self._pickers = [
             FacePicker(obj, "CarveFaces", translate("Carve"), translate("the whole surface"),

@@ -7,20 +7,16 @@ from ..qt import QtCore, QtGui, QtWidgets
 from ..setting_properties import OWN_PICTURE
 from ..thumbnails import Thumbnails
 from ..translation import translate
+from .box import Box
 
 _ICON_PX = 88
 
 
-class PatternBox(QtWidgets.QWidget):
+class PatternBox(Box):
     """Writes ExemplarPattern and ExemplarImage."""
 
-    changed = QtCore.Signal()
-
     def __init__(self, obj):
-        super().__init__()
-        self.setWindowTitle(translate("Pattern"))
-        self.setObjectName("FretworkPattern")
-        self._obj = obj
+        super().__init__(obj, "FretworkPattern", translate("Pattern"))
         self.list = _picture_list()
         self._description = QtWidgets.QLabel()
         self._description.setWordWrap(True)

@@ -10,6 +10,7 @@ from ..engine.errors import Cancelled
 from ..qt import QtCore, QtGui, QtWidgets
 from ..resources import icon
 from ..translation import translate
+from .box import Box
 
 
 def same_object(one, other) -> bool:
@@ -20,14 +21,11 @@ def same_object(one, other) -> bool:
         return False
 
 
-class ResultBox(QtWidgets.QWidget):
+class ResultBox(Box):
     """Starts, shows and stops the runs of the object."""
 
     def __init__(self, obj, carve_in_full):
-        super().__init__()
-        self.setWindowTitle(translate("Result"))
-        self.setObjectName("FretworkResult")
-        self._obj = obj
+        super().__init__(obj, "FretworkResult", translate("Result"))
         self._live = QtWidgets.QCheckBox(translate("Show a draft of every change"))
         self._live.setChecked(obj.Update == DRAFT_AUTOMATICALLY)
         self._live.toggled.connect(self._set_live)

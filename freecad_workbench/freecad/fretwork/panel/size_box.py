@@ -6,21 +6,17 @@ import random
 
 import FreeCADGui as Gui
 
-from ..qt import QtCore, QtWidgets
+from ..qt import QtWidgets
 from ..setting_properties import AUTOMATIC
 from ..translation import translate
+from .box import Box
 
 
-class SizeBox(QtWidgets.QWidget):
+class SizeBox(Box):
     """Writes the settings that most carvings are about; all others are in the property editor."""
 
-    changed = QtCore.Signal()
-
     def __init__(self, obj):
-        super().__init__()
-        self.setWindowTitle(translate("Size and look"))
-        self.setObjectName("FretworkSize")
-        self._obj = obj
+        super().__init__(obj, "FretworkSize", translate("Size and look"))
         self._layout = QtWidgets.QFormLayout(self)
         self._quantity("ShellThickness", translate("Wall"), translate("0: as the size of the object asks"), 0.2)
         self._quantity("ExemplarWidth", translate("Width of a repeat"), translate("0: the pattern's own"), 5)
@@ -29,9 +25,6 @@ class SizeBox(QtWidgets.QWidget):
         self._choice("SynthesisPreset", translate("Quality"))
         self._choice("ShellSide", translate("Wall grows"))
         self._arrangement()
-
-    def close_box(self) -> None:
-        pass
 
     def _quantity(self, name: str, label: str, tip: str, step: float) -> None:
         """A number with its unit, which takes expressions."""

@@ -7,6 +7,7 @@ import importlib
 import json
 import subprocess
 import time
+import unittest.mock
 from pathlib import Path
 
 import FreeCAD as App
@@ -314,9 +315,29 @@ class Packages(DocumentTest):
         self.assertEqual(list(self.folder.iterdir()), [])
         fw.update(two)
         written = fw.export([one, two], str(path))
-        self.assertEqual([Path(name).name for name in written], ["out-Box carved.3mf", "out-lid_2.3mf"])
+        self.assertEqual([Path(name).name for name in written], ["out-Box_carved.3mf", "out-lid_2.3mf"])
         for name in written:
             json.loads(engine().run(["info", name, "--json"]))
+
+    def test_objects_of_one_label_do_not_write_over_each_other(self):
+        one = fw.carve(self.shape(), pattern="hexagons", **QUICK)
+        two = fw.carve(self.document.Box, pattern="bricks", **QUICK)
+        one.Label, two.Label = "lid a", "lid/a"  # one name as files
+        written = fw.export([one, two], str(self.folder / "out.3mf"))
+        self.assertEqual([Path(name).read_bytes() for name in written],
+                         [Path(obj.Package).read_bytes() for obj in (one, two)])  # fmt: skip
+
+    def test_a_file_is_written_whole_or_stays_as_it_was(self):
+        carved = fw.carve(self.shape(), pattern="hexagons", **QUICK)
+        path = self.folder / "out.3mf"
+        path.write_bytes(b"before")
+        with unittest.mock.patch("shutil.copyfileobj", side_effect=OSError(28, "No space left on device")):
+            with self.assertRaisesRegex(BadInput, r"out\.3mf: cannot be written: No space left"):
+                fw.export([carved], str(path))
+        self.assertEqual(path.read_bytes(), b"before")
+        self.assertEqual(list(self.folder.iterdir()), [path])
+        with self.assertRaisesRegex(BadInput, "cannot be written: No such file"):
+            fw.export([carved], str(self.folder / "none" / "out.3mf"))
 
     def test_freecad_exports_by_the_type_that_is_registered(self):
         carved = fw.carve(self.shape(), pattern="hexagons", **QUICK)
@@ -337,7 +358,7 @@ class Packages(DocumentTest):
             time.sleep(0.05)
         digest, name = told.read_text().split(maxsplit=1)
         self.assertEqual(digest, hashlib.sha256(Path(carved.Package).read_bytes()).hexdigest())
-        self.assertEqual(Path(name.strip()).name, "Box carved.3mf")
+        self.assertEqual(Path(name.strip()).name, "Box_carved.3mf")
         with self.assertRaisesRegex(EngineError, "found no slicer 'nix'"):
             fw.open_in_slicer([carved], "nix")
 
