@@ -323,16 +323,18 @@ namespace {
 /// model that is metres tall, such as one in the wrong unit, is cut into thicker layers, to answer as soon.
 std::vector<std::string> draft_faults(const CarveResult& draft, const FabricationOptions& fabrication,
                                       const RunControl& run) {
-    constexpr double kMostLayers = 1000.0;
-    const MeshReport& mesh = draft.report.mesh.report;
-    const double height_mm = mesh.max_mm[2] - mesh.min_mm[2];
-    PrintabilitySettings settings{std::max(fabrication.layer_height_mm, height_mm / kMostLayers),
-                                  fabrication.overhang_deg};
+    constexpr std::size_t kMostLayers = 1000;
+    const std::size_t layers = layer_count(draft.carved.mesh, fabrication.layer_height_mm);
+    const double thicker = std::max(1.0, static_cast<double>(layers) / kMostLayers);
+    PrintabilitySettings settings{thicker * fabrication.layer_height_mm, fabrication.overhang_deg};
     settings.bodies = draft.report.shell.components;
     PrintabilityReport found = printability(draft.carved.mesh, settings, run);
     found.least_solid.reset();
     std::vector<std::string> sentences = print_faults(found, fabrication.nozzle_mm);
     std::ranges::copy(print_cautions(found), std::back_inserter(sentences));
+    if (layers > kMostLayers)
+        sentences.push_back(fmt::format("looked at in layers of {:.2g} mm, for {} layers of {:g} mm would take long",
+                                        settings.layer_height_mm, layers, fabrication.layer_height_mm));
     return sentences;
 }
 

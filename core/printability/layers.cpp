@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/mesh/edge_table.h"
+#include "core/printability/printability.h"
 
 namespace fretwork {
 namespace {
@@ -118,8 +119,13 @@ std::vector<std::vector<std::uint32_t>> triangles_across(const TriangleMesh& mes
     return lists;
 }
 
-/// Middles of layers of one height between the lowest and the highest point.
-std::vector<double> middles(const TriangleMesh& mesh, double step) {
+struct Layering {
+    double low_mm = 0.0;
+    std::size_t count = 0;
+};
+
+/// Layers of one height between the lowest and the highest point.
+Layering layering(const TriangleMesh& mesh, double step) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Triangle& t : mesh.triangles) {
         const auto [least, most] = extent_of(mesh, t);
@@ -130,13 +136,14 @@ std::vector<double> middles(const TriangleMesh& mesh, double step) {
     if (count > static_cast<double>(kMostLayers))
         throw InvalidInput("printability: the model is " + std::to_string(high - low) + " mm high, more than " +
                            std::to_string(kMostLayers) + " layers of " + std::to_string(step) + " mm");
-    std::vector<double> heights;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-        heights.push_back(low + (static_cast<double>(i) + 0.5) * step);
-    return heights;
+    return {low, static_cast<std::size_t>(count)};
 }
 
 }  // namespace
+
+std::size_t layer_count(const TriangleMesh& mesh, double layer_height_mm) {
+    return layering(mesh, layer_height_mm).count;
+}
 
 std::vector<Layer> cut_at(const TriangleMesh& mesh, const std::vector<double>& heights_mm, const RunControl& run) {
     const auto lists = triangles_across(mesh, heights_mm);
@@ -150,7 +157,11 @@ std::vector<Layer> cut_at(const TriangleMesh& mesh, const std::vector<double>& h
 }
 
 std::vector<Layer> cut_layers(const TriangleMesh& mesh, double layer_height_mm, const RunControl& run) {
-    return cut_at(mesh, middles(mesh, layer_height_mm), run);
+    const Layering layers = layering(mesh, layer_height_mm);
+    std::vector<double> middles_mm;
+    for (std::size_t i = 0; i < layers.count; ++i)
+        middles_mm.push_back(layers.low_mm + (static_cast<double>(i) + 0.5) * layer_height_mm);
+    return cut_at(mesh, middles_mm, run);
 }
 
 }  // namespace fretwork

@@ -62,4 +62,8 @@ inline constexpr std::size_t kMostPlaces = 20;
 PrintabilityReport printability(const TriangleMesh& mesh, const PrintabilitySettings& settings,
                                 const RunControl& run = {});
 
+/// How many layers of this height `printability` would look at.
+/// \throws InvalidInput  more than 100000, as printability
+std::size_t layer_count(const TriangleMesh& mesh, double layer_height_mm);
+
 }  // namespace fretwork

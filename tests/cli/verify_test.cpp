@@ -204,8 +204,8 @@ TEST_CASE("cli: verify judges every object of a plate on its own", "[cli][threem
     // Two posts 60 mm apart; where the loads lie is said in the coordinates of each.
     const TriangleMesh post = testing::make_box(Vec3::Zero(), Vec3(4, 4, 40));
     spit(folder / "posts.3mf",
-         make_package(make_model(
-             make_mesh_object(1, post, "name=\"firm\"") + testing::make_mesh_object(2, post, "name=\"soft\""),
+         testing::make_package(testing::make_model(
+             testing::make_mesh_object(1, post, "name=\"firm\"") + testing::make_mesh_object(2, post, "name=\"soft\""),
              "<item objectid=\"1\"/><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 60 0 0\"/>")));
     spit(folder / "loads.toml",
          "[structure]\nmaterial = \"PLA\"\n[[loads]]\nname = \"top\"\nshape = \"box\"\nmin_mm = [-1, -1, 38]\n"

@@ -241,6 +241,24 @@ TEST_CASE("carve: a check foresees what the draft of a run finds", "[pipeline]")
     CHECK(told(weak, "a draft: stress of"));
 }
 
+TEST_CASE("carve: a check of a tall model looks at fewer layers, and foresees where a run would find too many",
+          "[pipeline]") {
+    Settings settings = quick();
+    settings.input.size_mm = 1000.0;
+    const auto thicker = [&](double layer_mm) {
+        settings.fabrication.layer_height_mm = layer_mm;
+        for (const std::string& warning : check_carve(input_for(small_vase(), "cells"), settings).warnings)
+            if (warning.find("looked at in layers of") != warning.npos) return warning;
+        return std::string();
+    };
+    CHECK(thicker(2.0).empty());
+    CHECK_THAT(thicker(0.2), Catch::Contains("layers of 1 mm") && Catch::Contains("layers of 0.2 mm"));
+    settings.input.size_mm = 2000.0;
+    CHECK_THROWS_WITH(thicker(0.01), Catch::Contains("more than 100000 layers of 0.01"));
+    settings.synthesis.preset = Preset::kDefault;  // a run that looks at its layers
+    CHECK_THROWS_WITH(carve(input_for(small_vase(), "cells"), settings), Catch::Contains("more than 100000 layers"));
+}
+
 TEST_CASE("carve: more triangles than were wanted are owned up to", "[pipeline]") {
     const auto told = [](int wanted) {
         Settings settings = quick();
