@@ -19,8 +19,10 @@
 #include <TopoDS.hxx>
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <mutex>
 #include <sstream>
+#include <streambuf>
 #include <string>
 
 #include "core/base/error.h"
@@ -40,10 +42,29 @@ std::mutex& cad_mutex() {
     return mutex;
 }
 
+/// What OpenCASCADE says on std::cout of a broken file goes nowhere: standard output is for data.
+class SilentCout {
+  public:
+    SilentCout() : before_(std::cout.rdbuf(nullptr)) {}
+    ~SilentCout() { std::cout.rdbuf(before_); }
+    SilentCout(const SilentCout&) = delete;
+    SilentCout& operator=(const SilentCout&) = delete;
+
+  private:
+    std::streambuf* before_;
+};
+
 template <class Reader>
 TopoDS_Shape transferred(Reader& reader) {
     reader.TransferRoots();
     return reader.OneShape();
+}
+
+/// The last line of an IGES file has a T in column 73.
+bool is_terminated_iges(std::string_view bytes) {
+    const std::size_t end = bytes.find_last_not_of(" \r\n") + 1;
+    const std::size_t line = bytes.substr(0, end).find_last_of("\r\n") + 1;
+    return end - line > 72 && bytes[line + 72] == 'T';
 }
 
 /// A null shape when the file cannot be read.
@@ -51,17 +72,24 @@ TopoDS_Shape read_shape(std::string_view bytes, CadFormat format) {
     std::istringstream stream{std::string(bytes)};
     if (format == CadFormat::kBrep) {
         TopoDS_Shape shape;
-        // OpenCASCADE would complain about another header on standard output.
         if (bytes.substr(0, 4096).find("CASCADE Topology V") == bytes.npos) return shape;
         const BRep_Builder builder;
-        BRepTools::Read(shape, stream, builder);
+        // At the end of a file that is cut off OpenCASCADE would read on for ever.
+        stream.exceptions(std::ios::failbit | std::ios::badbit);
+        try {
+            BRepTools::Read(shape, stream, builder);
+        } catch (const std::ios::failure&) {
+            shape.Nullify();
+        }
         return shape;
     }
     if (format == CadFormat::kStep) {
         STEPControl_Reader reader;
         return reader.ReadStream("memory", stream) == IFSelect_RetDone ? transferred(reader) : TopoDS_Shape();
     }
-    // OpenCASCADE reads IGES from files alone.
+    // OpenCASCADE takes what there is of a file that is cut off.
+    if (!is_terminated_iges(bytes)) return {};
+    // It reads IGES from files alone.
     const ScratchFolder folder;
     const std::string path = folder / "model.igs";
     atomic_write(path, bytes);
@@ -184,6 +212,7 @@ MeshFile read_cad(std::string_view bytes, CadFormat format, std::string_view sou
         throw InvalidSetting("CAD meshing: found deviation " + std::to_string(deviation) + " and angle " +
                              std::to_string(meshing.angle_rad) + ", expected both above 0");
     const std::lock_guard lock(cad_mutex());
+    const SilentCout silent;
     // What OpenCASCADE has to say would go to standard output, where data belongs.
     Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
     try {

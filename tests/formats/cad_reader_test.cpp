@@ -18,6 +18,7 @@
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <iostream>
 #include <numbers>
 #include <sstream>
 #include <utility>
@@ -245,7 +246,19 @@ TEST_CASE("cad: what cannot be read is refused", "[formats][cad][errors]") {
         for (const std::string bytes : {"", "not a model", "ISO-10303-21;\nHEADER;\n"})
             CHECK_THROWS_AS(read_cad(bytes, format, "x"), InvalidInput);
     CHECK_THROWS_AS(read_cad("", CadFormat::kStep, "x", {0.0, 0.2}), InvalidSetting);
-    const std::string step = step_of(plate());
+    const std::string step = step_of(plate()), brep = brep_of(plate());
+    // Nothing of it is said on standard output, where data belongs.
+    std::ostringstream said;
+    std::streambuf* const before = std::cout.rdbuf(said.rdbuf());
+    for (std::size_t size = 100; size < brep.size(); size += 401)
+        CHECK_THROWS_AS(read_cad(brep.substr(0, size), CadFormat::kBrep, "cut.brep"), InvalidInput);
+    const std::string iges = iges_of(plate());
+    for (std::size_t size = 100; size < iges.size() - 81; size += 1301)
+        CHECK_THROWS_AS(read_cad(iges.substr(0, size), CadFormat::kIges, "cut.igs"), InvalidInput);
+    CHECK_NOTHROW(read_cad(iges + "\r\n\n", CadFormat::kIges, "ends.igs"));
+    std::cout.rdbuf(before);
+    CHECK(said.str().empty());
+    CHECK(std::cout.good());
     for (std::size_t size = 0; size < step.size(); size += 997) {
         CAPTURE(size);
         CHECK_THROWS_AS(read_cad(step.substr(0, size), CadFormat::kStep, "cut.step"), InvalidInput);
