@@ -17,7 +17,6 @@ enum class RandomStream : std::uint32_t {
     kMeshDistance,
     kPrintability,
     kStrength,
-    kModes,
 };
 
 /// The same five numbers give the same 64 random bits on every machine and in any order of calls,

@@ -1,6 +1,6 @@
 #include "core/fem/free_body.h"
 
-#include <Eigen/Eigenvalues>
+#include <Spectra/SymEigsSolver.h>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
@@ -8,15 +8,14 @@
 #include <map>
 #include <utility>
 
-#include "core/base/counter_random.h"
 #include "core/base/disjoint_sets.h"
 #include "core/base/vec.h"
 
 namespace fretwork {
 namespace {
 
-constexpr int kMostRounds = 30;
-constexpr double kSettled = 1e-3;  // relative change of the eigenvalues
+constexpr int kMostRounds = 100;
+constexpr double kSettled = 1e-3;  // residual of a mode, of its eigenvalue
 
 /// M-orthonormal columns, twice over against rounding. Columns that depend on those before become zero.
 void orthonormalize(const Eigen::VectorXd& mass, Eigen::MatrixXd& columns) {
@@ -69,15 +68,36 @@ Eigen::MatrixXd rigid_motions_of(const BeamSystem& system, const Eigen::VectorXd
     return motions;
 }
 
-Eigen::MatrixXd random_columns(Eigen::Index rows, Eigen::Index columns) {
-    Eigen::MatrixXd result(rows, columns);
-    for (Eigen::Index k = 0; k < columns; ++k)
-        for (Eigen::Index i = 0; i < rows; ++i)
-            result(i, k) = unit_interval(counter_random(0, RandomStream::kModes, static_cast<std::uint32_t>(k),
-                                                        static_cast<std::uint64_t>(i), 0)) -
-                           0.5;
-    return result;
-}
+/// y = D P K^-1 P' D x with D = M^(1/2), where P takes rigid motions out: its eigenvalues are 1 / lambda.
+class Flexibility {
+  public:
+    using Scalar = double;
+
+    Flexibility(const FreeBody& body, const RunControl& run)
+        : body_(body), run_(run), root_mass_(body.mass().cwiseSqrt()) {}
+
+    [[nodiscard]] Eigen::Index rows() const { return root_mass_.size(); }
+    [[nodiscard]] Eigen::Index cols() const { return root_mass_.size(); }
+
+    void perform_op(const double* x, double* y) const {
+        run_.throw_if_stopped();
+        const Eigen::VectorXd shape =
+            without_rigid(root_mass_.cwiseInverse().cwiseProduct(Eigen::Map<const Eigen::VectorXd>(x, rows())));
+        // These loads are in balance, since the shape has no rigid part.
+        const Eigen::VectorXd moved = without_rigid(body_.displacements(body_.mass().cwiseProduct(shape)));
+        Eigen::Map<Eigen::VectorXd>(y, rows()) = root_mass_.cwiseProduct(moved);
+    }
+
+  private:
+    [[nodiscard]] Eigen::VectorXd without_rigid(const Eigen::VectorXd& shape) const {
+        const Eigen::MatrixXd& rigid = body_.rigid_motions();
+        return shape - rigid * (rigid.transpose() * body_.mass().cwiseProduct(shape));
+    }
+
+    const FreeBody& body_;
+    const RunControl& run_;
+    Eigen::VectorXd root_mass_;
+};
 
 }  // namespace
 
@@ -104,36 +124,16 @@ Eigen::MatrixXd FreeBody::displacements(const Eigen::MatrixXd& forces_n) const {
 }
 
 Modes lowest_modes(const FreeBody& body, int count, const RunControl& run) {
-    const Eigen::VectorXd& mass = body.mass();
-    const Eigen::MatrixXd& rigid = body.rigid_motions();
-    const auto without_rigid = [&](Eigen::MatrixXd& shapes) {
-        shapes -= rigid * (rigid.transpose() * (mass.asDiagonal() * shapes));
-    };
-    const Eigen::Index carried = std::min<Eigen::Index>(2 * count, mass.size() - rigid.cols());
-    Eigen::MatrixXd shapes = random_columns(mass.size(), carried);
-    without_rigid(shapes);
-    orthonormalize(mass, shapes);
+    Flexibility flexibility(body, run);
+    const Eigen::Index there = body.mass().size() - body.rigid_motions().cols();
+    const Eigen::Index wanted = std::min<Eigen::Index>(count, there - 1);
+    const Eigen::Index carried = std::min<Eigen::Index>(2 * wanted + 1, there);
+    Spectra::SymEigsSolver<Flexibility> solver(flexibility, wanted, carried);
+    solver.init();
+    solver.compute(Spectra::SortRule::LargestAlge, kMostRounds, kSettled);
     Modes modes;
-    Eigen::VectorXd before = Eigen::VectorXd::Zero(carried);
-    for (int round = 0; round < kMostRounds; ++round) {
-        run.throw_if_stopped();
-        // These loads are in balance, since the shapes have no rigid part.
-        Eigen::MatrixXd next = body.displacements(mass.asDiagonal() * shapes);
-        without_rigid(next);
-        const Eigen::MatrixXd flexibility = shapes.transpose() * (mass.asDiagonal() * next);
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turn(0.5 * (flexibility + flexibility.transpose()));
-        const Eigen::VectorXd found = turn.eigenvalues().reverse();
-        shapes = next * turn.eigenvectors().rowwise().reverse();
-        orthonormalize(mass, shapes);
-        const Eigen::Index judged = std::min<Eigen::Index>(count, carried);
-        const bool settled =
-            ((found - before).head(judged).array().abs() <= kSettled * found.head(judged).array()).all();
-        before = found;
-        if (settled) break;
-    }
-    const Eigen::Index kept = std::min<Eigen::Index>(count, carried);
-    modes.lambda = before.head(kept).cwiseInverse();
-    modes.shape = shapes.leftCols(kept);
+    modes.lambda = solver.eigenvalues().cwiseInverse();
+    modes.shape = body.mass().cwiseSqrt().cwiseInverse().asDiagonal() * solver.eigenvectors();
     return modes;
 }
 

@@ -46,9 +46,10 @@ struct Modes {
     Eigen::MatrixXd shape;
 };
 
-/// The lowest modes that are not rigid motions, by subspace iteration on the inverse, from which rigid motions are
-/// taken out; twice as many are carried along as are wanted, until eigenvalues hold to a thousandth. Cost  some twenty
-/// solutions for each mode: 1 s for twelve of 43,000 freedoms. \throws Cancelled  `run` asked to stop.
+/// The lowest modes that are not rigid motions, by Spectra's restarted Lanczos method on the inverse, from which rigid
+/// motions are taken out; each to a residual of a thousandth. Fewer than `count` where the object has no more, or they
+/// do not settle. Cost  some ten solutions for each mode: 1 s for twelve of 43,000 freedoms.
+/// \throws Cancelled  `run` asked to stop.
 Modes lowest_modes(const FreeBody& body, int count, const RunControl& run = {});
 
 }  // namespace fretwork

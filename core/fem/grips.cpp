@@ -1,5 +1,6 @@
 #include "core/fem/grips.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,12 +21,9 @@ constexpr double kFriction = 0.5;
 constexpr std::size_t kTriesPerGrip = 12;
 
 double extent_mm(const SurfaceVoxels& shell) {
-    Vec3 low = shell.points_mm.front(), high = low;
-    for (const Vec3& p : shell.points_mm) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    return (high - low).maxCoeff();
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : shell.points_mm) box.extend(p);
+    return box.sizes().maxCoeff();
 }
 
 /// Voxels one after the other, each as far as can be from all before it.

@@ -1,102 +1,93 @@
 #include "core/fem/linear_program.h"
 
-#include <Eigen/LU>
-#include <limits>
-#include <utility>
+#include <glpk.h>
+
+#include <algorithm>
+#include <vector>
 
 #include "core/base/error.h"
 
 namespace fretwork {
 namespace {
 
-constexpr double kZero = 1e-10;     // against entries of about one
-constexpr double kFeasible = 1e-7;  // sum of artificial columns that is none
-constexpr int kStepsBeforeBland = 200;
-constexpr int kMostSteps = 20000;
+/// GLPK ends the process where a number is none.
+void check_finite(const Eigen::Ref<const Eigen::MatrixXd>& numbers) {
+    if (!numbers.allFinite()) throw SolverFailure("linear program: an entry is not finite");
+}
+
+struct Delete {
+    void operator()(glp_prob* problem) const { glp_delete_prob(problem); }
+};
 
 }  // namespace
 
-LinearProgram::LinearProgram(Eigen::MatrixXd A, Eigen::VectorXd b) : rows_(std::move(A)), b_(std::move(b)) {
-    for (Eigen::Index i = 0; i < b_.size(); ++i) {
-        if (b_[i] < 0.0) {
-            rows_.row(i) *= -1.0;
-            b_[i] *= -1.0;
+struct LinearProgram::Impl {
+    std::unique_ptr<glp_prob, Delete> problem{glp_create_prob()};
+    bool feasible = false;
+
+    void set_equations(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+    /// GLP_OPT, GLP_NOFEAS, GLP_UNBND ...
+    int solve();
+};
+
+void LinearProgram::Impl::set_equations(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+    glp_prob* lp = problem.get();
+    glp_set_obj_dir(lp, GLP_MAX);
+    const auto rows = static_cast<int>(A.rows()), columns = static_cast<int>(A.cols());
+    glp_add_rows(lp, rows);
+    glp_add_cols(lp, columns);
+    // It counts from 1.
+    for (int i = 0; i < rows; ++i) glp_set_row_bnds(lp, i + 1, GLP_FX, b[i], b[i]);
+    std::vector<int> row_numbers(static_cast<std::size_t>(rows) + 1);
+    std::vector<double> values(row_numbers.size());
+    for (int j = 0; j < columns; ++j) {
+        glp_set_col_bnds(lp, j + 1, GLP_LO, 0.0, 0.0);
+        int filled = 0;
+        for (int i = 0; i < rows; ++i) {
+            if (A(i, j) == 0.0) continue;
+            ++filled;
+            row_numbers[static_cast<std::size_t>(filled)] = i + 1;
+            values[static_cast<std::size_t>(filled)] = A(i, j);
         }
-        basis_.push_back(rows_.cols() + i);
+        glp_set_mat_col(lp, j + 1, filled, row_numbers.data(), values.data());
     }
-    value_ = b_;
-    improve(Eigen::VectorXd::Zero(rows_.cols()), -1.0);
-    double artificial = 0.0;
-    for (Eigen::Index i = 0; i < b_.size(); ++i)
-        if (basis_[static_cast<std::size_t>(i)] >= rows_.cols()) artificial += value_[i];
-    feasible_ = artificial <= kFeasible * (1.0 + b_.sum());
+    glp_std_basis(lp);
+}
+
+int LinearProgram::Impl::solve() {
+    glp_smcp settings;
+    glp_init_smcp(&settings);
+    settings.msg_lev = GLP_MSG_OFF;
+    settings.tol_bnd = settings.tol_dj = 1e-10;
+    if (glp_simplex(problem.get(), &settings) != 0) throw SolverFailure("linear program: the solver gave up");
+    return glp_get_status(problem.get());
+}
+
+LinearProgram::LinearProgram(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) : impl_(std::make_unique<Impl>()) {
+    check_finite(A);
+    check_finite(b);
+    impl_->set_equations(A, b);
+    impl_->feasible = impl_->solve() == GLP_OPT;
+}
+
+LinearProgram::~LinearProgram() = default;
+LinearProgram::LinearProgram(LinearProgram&&) noexcept = default;
+LinearProgram& LinearProgram::operator=(LinearProgram&&) noexcept = default;
+
+bool LinearProgram::feasible() const {
+    return impl_->feasible;
 }
 
 Eigen::VectorXd LinearProgram::maximize(const Eigen::VectorXd& c) {
-    if (!feasible_) throw SolverFailure("linear program: no solution meets its equations");
-    const double size = c.cwiseAbs().maxCoeff();
-    if (size > 0.0) improve(c / size, 0.0);
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(rows_.cols());
-    for (std::size_t i = 0; i < basis_.size(); ++i)
-        if (basis_[i] < rows_.cols()) x[basis_[i]] = std::max(0.0, value_[static_cast<Eigen::Index>(i)]);
+    if (!feasible()) throw SolverFailure("linear program: no solution meets its equations");
+    check_finite(c);
+    const double largest = c.cwiseAbs().maxCoeff(), size = largest > 0.0 ? largest : 1.0;
+    glp_prob* lp = impl_->problem.get();
+    for (int j = 0; j < c.size(); ++j) glp_set_obj_coef(lp, j + 1, c[j] / size);
+    if (impl_->solve() != GLP_OPT) throw SolverFailure("linear program: the aim has no upper bound");
+    Eigen::VectorXd x(c.size());
+    for (int j = 0; j < c.size(); ++j) x[j] = std::max(0.0, glp_get_col_prim(lp, j + 1));
     return x;
-}
-
-Eigen::VectorXd LinearProgram::column(Eigen::Index j) const {
-    return j < rows_.cols() ? Eigen::VectorXd(rows_.col(j))
-                            : Eigen::VectorXd(Eigen::VectorXd::Unit(b_.size(), j - rows_.cols()));
-}
-
-/// The column that gains most per unit, or the first that gains; -1 where none does. Artificial ones stay out.
-Eigen::Index LinearProgram::entering(const Eigen::VectorXd& cost, const Eigen::VectorXd& prices, bool first) const {
-    const Eigen::VectorXd gain = cost - rows_.transpose() * prices;
-    Eigen::Index best = -1;
-    for (Eigen::Index j = 0; j < gain.size(); ++j) {
-        if (gain[j] <= kZero || (best >= 0 && gain[j] <= gain[best])) continue;
-        best = j;
-        if (first) break;
-    }
-    return best;
-}
-
-/// The row whose value reaches zero first; -1 where none does. An artificial column that is still there once a
-/// solution is known leaves as soon as it would change.
-Eigen::Index LinearProgram::leaving(const Eigen::VectorXd& step, bool first_phase) const {
-    Eigen::Index best = -1;
-    double least = std::numeric_limits<double>::infinity();
-    for (Eigen::Index i = 0; i < step.size(); ++i) {
-        const bool stuck = !first_phase && basis_[static_cast<std::size_t>(i)] >= rows_.cols();
-        if (stuck && std::abs(step[i]) > kFeasible) return i;
-        if (stuck || step[i] <= kZero) continue;
-        const double ratio = std::max(0.0, value_[i]) / step[i];
-        const bool tie = best >= 0 && ratio == least;
-        if (ratio < least || (tie && basis_[static_cast<std::size_t>(i)] < basis_[static_cast<std::size_t>(best)])) {
-            best = i;
-            least = ratio;
-        }
-    }
-    return best;
-}
-
-void LinearProgram::improve(const Eigen::VectorXd& cost, double artificial_cost) {
-    const Eigen::Index rows = b_.size();
-    for (int steps = 0; steps < kMostSteps; ++steps) {
-        Eigen::MatrixXd basis(rows, rows);
-        Eigen::VectorXd basis_cost(rows);
-        for (Eigen::Index i = 0; i < rows; ++i) {
-            const Eigen::Index j = basis_[static_cast<std::size_t>(i)];
-            basis.col(i) = column(j);
-            basis_cost[i] = j < rows_.cols() ? cost[j] : artificial_cost;
-        }
-        const Eigen::PartialPivLU<Eigen::MatrixXd> lu(basis);
-        value_ = lu.solve(b_);
-        const Eigen::Index enters = entering(cost, lu.transpose().solve(basis_cost), steps > kStepsBeforeBland);
-        if (enters < 0) return;
-        const Eigen::Index leaves = leaving(lu.solve(rows_.col(enters)), artificial_cost != 0.0);
-        if (leaves < 0) throw SolverFailure("linear program: the aim has no upper bound");
-        basis_[static_cast<std::size_t>(leaves)] = enters;
-    }
-    throw SolverFailure("linear program: no end after " + std::to_string(kMostSteps) + " steps");
 }
 
 }  // namespace fretwork

@@ -177,12 +177,9 @@ class Search {
 };
 
 double Search::extent_mm() const {
-    Vec3 low = at_mm(0), high = low;
-    for (SampleIndex s = 0; s < graph_.samples.size(); ++s) {
-        low = low.cwiseMin(at_mm(s));
-        high = high.cwiseMax(at_mm(s));
-    }
-    return (high - low).maxCoeff();
+    Eigen::AlignedBox3d box;
+    for (SampleIndex s = 0; s < graph_.samples.size(); ++s) box.extend(at_mm(s));
+    return box.sizes().maxCoeff();
 }
 
 /// Of each solid edge the mode that it fears most, the weakest edge first.
