@@ -252,6 +252,9 @@ TEST_CASE("cad: what cannot be read is refused", "[formats][cad][errors]") {
     std::streambuf* const before = std::cout.rdbuf(said.rdbuf());
     for (std::size_t size = 100; size < brep.size(); size += 401)
         CHECK_THROWS_AS(read_cad(brep.substr(0, size), CadFormat::kBrep, "cut.brep"), InvalidInput);
+    std::string without_surfaces = brep;
+    without_surfaces.replace(brep.find("Surfaces "), 9, "Surfacez ");
+    CHECK_THROWS_AS(read_cad(without_surfaces, CadFormat::kBrep, "spoilt.brep"), InvalidInput);
     const std::string iges = iges_of(plate());
     for (std::size_t size = 100; size < iges.size() - 81; size += 1301)
         CHECK_THROWS_AS(read_cad(iges.substr(0, size), CadFormat::kIges, "cut.igs"), InvalidInput);
