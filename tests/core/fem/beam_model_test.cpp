@@ -314,6 +314,24 @@ TEST_CASE("facing sheets: those whose walls meet inside, and no others", "[fem][
     CHECK(std::ranges::all_of(outside, [](VoxelIndex v) { return v == kNoVoxel; }));
 }
 
+TEST_CASE("facing sheets: walls that meet around an edge are no facing sheets", "[fem]") {
+    const SurfaceVoxels box = voxelize(make_box(Vec3::Zero(), Vec3(20, 20, 20)), {.resolution = 40});
+    CHECK(std::ranges::all_of(facing_voxels(box, 4.0), [](VoxelIndex v) { return v == kNoVoxel; }));
+    const std::vector<VoxelIndex> across = facing_voxels(box, 11.0);
+    CHECK(std::ranges::count(across, kNoVoxel) < static_cast<std::ptrdiff_t>(box.size() / 10));
+}
+
+TEST_CASE("facing sheets: a few voxels are no tie", "[fem]") {
+    const TriangleMesh plate = make_box(Vec3::Zero(), Vec3(60, 30, 3));
+    const Case c = make_case(plate, 60, nullptr, 60);
+    const double voxel_mm2 = c.shell.grid.voxel_mm * c.shell.grid.voxel_mm;
+    double least_mm2 = 1e9;
+    for (const SheetTie& tie : sheet_ties(c.shell, c.solid, c.graph, facing_voxels(c.shell, 2.0)))
+        least_mm2 = std::min(least_mm2, tie.area_mm2);
+    CHECK(least_mm2 >= 4.0 * voxel_mm2);
+    CHECK(least_mm2 < 8.0 * voxel_mm2);
+}
+
 /// Largest score of the solid edges on the top and on the bottom of the plate, held at one end, pressed down on the top
 /// at the other.
 std::pair<double, double> scores_above_and_below(const Case& c, double inner_wall_mm) {

@@ -106,6 +106,16 @@ Resultant resultant_of(const SurfaceVoxels& shell, const LoadCase& load_case) {
     return sum;
 }
 
+/// The beam model has each patch push at its sample.
+Vec3 moment_at_samples(const Case& c, const LoadCase& load_case) {
+    Vec3 moment = Vec3::Zero();
+    for (const PatchLoad& patch : load_case.loads)
+        for (const VoxelIndex v : patch.voxels)
+            moment -= c.shell.points_mm[c.graph.samples[c.graph.owner[v]]].cross(
+                patch.pressure_mpa * static_cast<double>(c.shell.area_mm2[v]) * c.shell.normals[v].cast<double>());
+    return moment;
+}
+
 TEST_CASE("worst cases: in balance, as strong as asked, and what the beam model finds", "[fem][loads][property]") {
     const bool vase = GENERATE(false, true);
     const Case c = blob_case(vase ? make_cylinder(12.0, 40.0, 48, 12) : make_icosphere(20.0, 4), 48, 4, 150);
@@ -117,6 +127,7 @@ TEST_CASE("worst cases: in balance, as strong as asked, and what the beam model 
         CHECK(sum.total == Approx(30.0).epsilon(1e-3));
         CHECK(sum.force.norm() < 1e-3);
         CHECK(sum.moment.norm() < 0.05);
+        CHECK(moment_at_samples(c, worst.load_case).norm() < 0.05);
         CHECK(worst.load_case.loads.size() <= 10);
         for (const PatchLoad& patch : worst.load_case.loads) CHECK(patch.pressure_mpa > 0.0);
         CHECK(c.graph.edges[worst.edge].state == EdgeState::kSolid);
@@ -176,6 +187,64 @@ TEST_CASE("worst cases: no other pressure of that strength is worse for the weak
     // And for each region its own case is the worst of all that were found.
     for (const WorstCase& worst : cases)
         for (const WorstCase& other : cases) CHECK(score_pa(c, other.load_case, worst.edge) < 1.01 * worst.score_pa);
+}
+
+/// Pushes of a newton in all on each sample's material: force, moment on the voxels and at the samples, and the sum.
+Eigen::MatrixXd pushes_on_samples(const Case& c) {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(10, static_cast<Eigen::Index>(c.graph.samples.size()));
+    std::vector<double> area(c.graph.samples.size(), 0.0);
+    for (VoxelIndex v = 0; v < c.shell.size(); ++v) {
+        if (c.solid[v] != SolidState::kSolid) continue;
+        const SampleIndex s = c.graph.owner[v];
+        area[s] += static_cast<double>(c.shell.area_mm2[v]);
+        const Vec3 push = -static_cast<double>(c.shell.area_mm2[v]) * c.shell.normals[v].cast<double>();
+        rows.block<3, 1>(0, s) += push;
+        rows.block<3, 1>(3, s) += c.shell.points_mm[c.graph.samples[s]].cross(push) / 40.0;
+        rows.block<3, 1>(6, s) += c.shell.points_mm[v].cross(push) / 40.0;
+    }
+    for (Eigen::Index s = 0; s < rows.cols(); ++s) rows.col(s) /= area[static_cast<std::size_t>(s)];
+    rows.row(9).setOnes();
+    return rows;
+}
+
+TEST_CASE("worst cases: no direction of stress makes a worse one", "[fem][loads][property]") {
+    const Case c = blob_case(make_icosphere(20.0, 4), 48, 6, 120);
+    const BeamSystem system = system_of(c);
+    const std::vector<WorstCase> cases = worst_cases(c.shell, c.solid, c.graph, system, {3, 1.0});
+    REQUIRE(cases.size() == 3);
+    const Eigen::MatrixXd rows = pushes_on_samples(c);
+    Eigen::MatrixXd forces =
+        Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(system.mesh.nodes_mm.size()), rows.cols());
+    for (Eigen::Index s = 0; s < rows.cols(); ++s)
+        for (int node = 0; node < 2; ++node)
+            forces.block<3, 1>(
+                3 * (static_cast<Eigen::Index>(system.mesh.first_node[static_cast<std::size_t>(s)]) + node), s) =
+                0.5 * rows.block<3, 1>(0, s);
+    // In balance only together; what a single push does to the springs of the free body adds up to nothing.
+    const FreeBody body(system, system.factors(states_of(c.graph)), uneven_mass(system));
+    const Eigen::MatrixXd moved = body.displacements(forces);
+    LinearProgram program(rows, Eigen::VectorXd::Unit(10, 9));
+    REQUIRE(program.feasible());
+    for (const WorstCase& worst : cases) {
+        Eigen::MatrixXd corners(24, rows.cols());
+        for (int n = 0; n < 8; ++n)
+            corners.middleRows<3>(3 * n) = moved.middleRows<3>(
+                3 * static_cast<Eigen::Index>(system.mesh.beams[worst.edge].nodes[static_cast<std::size_t>(n)]));
+        const Eigen::MatrixXd stress = system.elements.stress_operators(worst.edge) * corners;
+        double best_mpa = 0.0;
+        for (std::uint32_t i = 0; i < 400; ++i) {
+            Eigen::VectorXd aim(6);
+            for (Eigen::Index k = 0; k < 6; ++k)
+                aim[k] =
+                    unit_interval(counter_random(3, RandomStream::kTest, i, static_cast<std::uint64_t>(k), 0)) - 0.5;
+            const Eigen::VectorXd x = program.maximize(stress.middleRows<6>(6 * (i % 8)).transpose() * aim);
+            const Eigen::Matrix<double, 24, 1> at_corners = corners * x;
+            best_mpa = std::max(best_mpa, system.elements.beam_score_mpa(worst.edge, at_corners));
+        }
+        CAPTURE(worst.edge, 1e6 * best_mpa / worst.score_pa);
+        CHECK(worst.score_pa >= 0.999 * 1e6 * best_mpa);
+        CHECK(worst.score_pa < 1.5 * 1e6 * best_mpa);
+    }
 }
 
 TEST_CASE("worst cases: a narrow neck is where a dumb-bell is weak", "[fem][loads]") {

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "core/exemplar/builtin/builtin_patterns.h"
 #include "core/pipeline/carve.h"
+#include "core/pipeline/strength_rounds.h"
 #include "core/reinforce/pattern_pieces.h"
 #include "support/make_meshes.h"
 
@@ -91,6 +93,10 @@ TEST_CASE("strength rounds: what cannot hold is left as strong as it became, and
     CHECK(best < 2.0);
     CHECK(best >= strength.rounds.front().least_factor);
     CHECK(strength.check.report.least_factor == best);
+    // What came out is the strongest of them.
+    const StrengthCheckSettings check = strength_check_settings(pushed_with(2000.0, 20), 0);
+    const SurfaceLoads loads = loads_of_source(vase().mesh, {}, pushed_with(2000.0, 20), check.resolution);
+    CHECK(check_strength(result.carved.mesh, loads, check).report.least_factor == Approx(best).epsilon(1e-4));
     REQUIRE(strength.faults.size() == 1);
     CHECK(std::ranges::any_of(result.report.warnings, [&](const std::string& warning) {
         return warning.starts_with(strength.faults.front());
@@ -112,6 +118,39 @@ TEST_CASE("strength rounds: no more of them and no more voxels than allowed", "[
     const std::size_t added = added_in(*few.report.strength);
     CHECK(static_cast<double>(added) <= budget_of(sparing, few));
     CHECK(static_cast<double>(added) > budget_of(sparing, few) - 1.0);
+}
+
+TEST_CASE("strength rounds: two rounds that gain nothing are enough, and the strongest object stays",
+          "[pipeline][strength]") {
+    Settings settings = pushed_with(300.0, 0), thinner = settings;
+    settings.shell.thickness_mm = 2.4;
+    thinner.shell.thickness_mm = 1.6;
+    const CarveResult strong = carve(vase(), settings), weak = carve(vase(), thinner);
+    const auto object = [](const CarveResult& result, std::vector<std::uint8_t> forced) {
+        MadeObject made;
+        made.forced = std::move(forced);
+        made.enlarged.solid = result.solid;
+        made.carved.mesh = result.carved.mesh;
+        return made;
+    };
+    const StrengthCheckSettings check = strength_check_settings(settings, 0);
+    const SurfaceLoads loads = loads_of_source(vase().mesh, {}, settings, check.resolution);
+    int made = 0;
+    const StrengthRounds rounds =
+        strengthen(object(strong, std::vector<std::uint8_t>(strong.shell.size(), 0)), strong.shell,
+                   link_two_rings(strong.shell), loads, {8, 1.0, 6.0, check},
+                   [&](std::vector<std::uint8_t> forced, const std::vector<VoxelIndex>& added, const RunControl&) {
+                       CHECK_FALSE(added.empty());
+                       return object(++made == 1 ? weak : strong, std::move(forced));
+                   },
+                   {});
+    CHECK(made == 2);
+    CHECK(rounds.record.stopped_by == "no gain");
+    REQUIRE(rounds.record.rounds.size() == 3);
+    CHECK(rounds.record.rounds[1].least_factor < 0.98 * rounds.record.rounds[0].least_factor);
+    CHECK(rounds.object.carved.mesh.positions_mm == strong.carved.mesh.positions_mm);
+    CHECK(rounds.record.check.report.least_factor == rounds.record.rounds[0].least_factor);
+    CHECK(std::ranges::count(rounds.object.forced, std::uint8_t{1}) == 0);
 }
 
 TEST_CASE("strength rounds: threads do not show in the result", "[pipeline][strength][determinism]") {

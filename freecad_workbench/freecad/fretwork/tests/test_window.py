@@ -123,6 +123,12 @@ class Panel(WindowTest):
         self.assertEqual(carved.State, "failed")
         self.press(QtWidgets.QDialogButtonBox.Cancel)
 
+    def test_an_object_that_is_deleted_under_its_panel_disturbs_nobody(self):
+        self.open()
+        self.document.removeObject("Carved")
+        other = fw.carve(self.box, pattern="waves", draft=True, **QUICK)
+        self.assertEqual(other.State, "draft")
+
     def test_edit_again_and_cancel_brings_back_what_was(self):
         carved = self.open()
         self.press(QtWidgets.QDialogButtonBox.Ok)
