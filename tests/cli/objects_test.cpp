@@ -170,7 +170,8 @@ TEST_CASE("cli: verify of a carved plate judges what was carved of it", "[cli][t
     spit(folder / "s.toml",
          "[exemplar]\npattern = \"cells\"\n[synthesis]\npreset = \"draft\"\n[shell]\nresolution = 32\n"
          "[structure]\nmax_iterations = 1\nsamples = 60\nmaterial = \"ABS\"\n[[object]]\nmatch = \"S-2\"\n"
-         "structure.material = \"PLA\"\nstructure.gravity = [1, 0, 0]\n");
+         "structure.material = \"PLA\"\nstructure.gravity = [1, 0, 0]\n"
+         "structure.weak_regions = 1\n");
     const ProgramResult carved = run_program(
         {"carve", folder / "in.3mf", "--pattern", folder / "s.toml", "-o", folder / "out.3mf", "--objects", "lid,2"});
     CAPTURE(carved.err);
@@ -192,6 +193,8 @@ TEST_CASE("cli: verify of a carved plate judges what was carved of it", "[cli][t
     };
     check(0, "\"lid\"", 1040.0, 2);
     check(1, "object 2", 1240.0, 0);
+    // Looked for on the model that was carved, which the package keeps.
+    CHECK(strength["objects"][1]["cases"].back()["name"].get<std::string>().starts_with("worst case at"));
 }
 
 TEST_CASE("cli: --check looks at every object", "[cli][threemf]") {

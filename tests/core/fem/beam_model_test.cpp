@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "core/base/error.h"
@@ -314,11 +315,28 @@ TEST_CASE("facing sheets: those whose walls meet inside, and no others", "[fem][
     CHECK(std::ranges::all_of(outside, [](VoxelIndex v) { return v == kNoVoxel; }));
 }
 
-TEST_CASE("facing sheets: walls that meet around an edge are no facing sheets", "[fem]") {
-    const SurfaceVoxels box = voxelize(make_box(Vec3::Zero(), Vec3(20, 20, 20)), {.resolution = 40});
-    CHECK(std::ranges::all_of(facing_voxels(box, 4.0), [](VoxelIndex v) { return v == kNoVoxel; }));
-    const std::vector<VoxelIndex> across = facing_voxels(box, 11.0);
-    CHECK(std::ranges::count(across, kNoVoxel) < static_cast<std::ptrdiff_t>(box.size() / 10));
+/// A wedge along y, whose edge at the origin has this angle inside.
+TriangleMesh make_wedge(double angle_rad) {
+    const Vec3 up(40.0 * std::cos(angle_rad), 0, 40.0 * std::sin(angle_rad)), along(40, 0, 0), far(0, 20, 0);
+    return {{Vec3::Zero(), along, up, far, along + far, up + far},
+            {{0, 1, 2}, {3, 5, 4}, {0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {2, 5, 3}, {2, 3, 0}}};
+}
+
+TEST_CASE("facing sheets: walls that meet around an edge count where it is sharp", "[fem]") {
+    const auto meeting_at_edge = [](double degrees) {
+        const SurfaceVoxels shell = voxelize(make_wedge(degrees * std::numbers::pi / 180.0), {.resolution = 60});
+        const std::vector<VoxelIndex> meeting = facing_voxels(shell, 6.0);
+        std::size_t count = 0;
+        for (VoxelIndex v = 0; v < shell.size(); ++v) {
+            const Vec3& p = shell.points_mm[v];
+            // Away from the ends, and from voxels that stand for both faces.
+            const double away = std::hypot(p[0], p[2]);
+            if (away > 1.0 && away < 5.0 && p[1] > 4.0 && p[1] < 16.0 && meeting[v] != kNoVoxel) ++count;
+        }
+        return count;
+    };
+    CHECK(meeting_at_edge(80.0) == 0);  // normals 100 degrees apart
+    CHECK(meeting_at_edge(40.0) > 100);
 }
 
 TEST_CASE("facing sheets: a few voxels are no tie", "[fem]") {

@@ -136,6 +136,22 @@ TEST_CASE("worst cases: in balance, as strong as asked, and what the beam model 
     }
 }
 
+TEST_CASE("worst cases: the beam model takes those that its profile asks for", "[fem][loads]") {
+    const Case c = blob_case(make_icosphere(20.0, 4), 48, 4, 120);
+    const std::vector<WorstCase> cases = worst_cases(c.shell, c.solid, c.graph, system_of(c), {3, 20.0});
+    REQUIRE(cases.size() == 3);
+    ForceProfile profile;
+    profile.worst = {3, 20.0};
+    BeamModel model(c.shell, c.solid, c.graph, beam_half_widths(c.shell, c.solid), profile, material_by_name("PLA"),
+                    {});
+    const std::vector<double> scores = model.edge_scores_pa(states_of(c.graph));
+    for (const WorstCase& worst : cases) {
+        double of_cases = 0.0;
+        for (const WorstCase& other : cases) of_cases = std::max(of_cases, score_pa(c, other.load_case, worst.edge));
+        CHECK(scores[worst.edge] == Approx(of_cases).epsilon(1e-6));
+    }
+}
+
 /// Other pressures in balance, of the same strength: extreme ones, that some direction of pushing makes.
 std::vector<LoadCase> random_balanced_loads(const Case& c, const LoadCase& like, double total_n, int count) {
     const auto samples = static_cast<Eigen::Index>(c.graph.samples.size());
@@ -208,10 +224,10 @@ Eigen::MatrixXd pushes_on_samples(const Case& c) {
 }
 
 TEST_CASE("worst cases: no direction of stress makes a worse one", "[fem][loads][property]") {
-    const Case c = blob_case(make_icosphere(20.0, 4), 48, 6, 120);
+    const Case c = blob_case(make_icosphere(20.0, 4), 48, 7, 150);
     const BeamSystem system = system_of(c);
-    const std::vector<WorstCase> cases = worst_cases(c.shell, c.solid, c.graph, system, {3, 1.0});
-    REQUIRE(cases.size() == 3);
+    const std::vector<WorstCase> cases = worst_cases(c.shell, c.solid, c.graph, system, {4, 1.0});
+    REQUIRE(cases.size() == 4);
     const Eigen::MatrixXd rows = pushes_on_samples(c);
     Eigen::MatrixXd forces =
         Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(system.mesh.nodes_mm.size()), rows.cols());
