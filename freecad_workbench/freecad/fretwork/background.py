@@ -11,13 +11,12 @@ from typing import Callable
 
 import FreeCAD as App
 
-from .carved import FAILED
 from .engine.errors import Cancelled, EngineError
 from .engine.request import CarveRequest
 from .preferences import engine
 from .program_process import ProgramProcess
 from .qt import QtCore, run
-from .results import Result, Share, Task
+from .results import Result, Share, Task, remember_failure
 from .status_bar import JobBar
 from .strength_check import Strength, StrengthTask
 
@@ -68,6 +67,7 @@ class Job(QtCore.QObject):
 
     def _fail(self, error: EngineError) -> None:
         self.task.discard()
+        remember_failure(self.task.key, self.task.draft, error)
         self.failed.emit(error)
 
 
@@ -197,7 +197,6 @@ def _tell_check(obj, error: EngineError) -> None:
 
 def _tell(obj, error: EngineError) -> None:
     if not isinstance(error, Cancelled):
-        obj.State = FAILED
-        obj.Warnings = [str(error)]
+        obj.Proxy.show_failure(obj, error)
         App.Console.PrintError(f"{obj.Label}: {error}\n")
     obj.purgeTouched()

@@ -19,7 +19,7 @@ from .engine.spec import CARVE, KEEP, Region
 from .engine.summary import summary_lines, warning_lines
 from .mesh_files import read_face_colors, read_mesh
 from .preferences import engine
-from .results import Result, make, remembered
+from .results import Result, failure, make, remembered
 from .setting_properties import OWN_PICTURE, PICTURES, SettingProperty, changed_values, setting_properties
 from .source import model_of, region_of, same_placement
 from .stateless import Stateless
@@ -150,6 +150,8 @@ class Carved(Stateless):
             obj.State = CARVED if obj.PackageKey == key else DRAFT
         elif known:
             self.show(obj, known)
+        elif failure(key, draft=True):
+            self.show_failure(obj, failure(key, draft=True))
         elif obj.Update == BY_REQUEST:
             obj.State = OUTDATED if obj.ResultKey else NOT_CARVED
         elif App.GuiUp:
@@ -180,6 +182,11 @@ class Carved(Stateless):
             obj.Package = str(result.package)
             obj.PackageKey = result.key
         obj.State = DRAFT if result.draft else CARVED
+
+    def show_failure(self, obj, error: EngineError) -> None:
+        """Says why there is no result for the present settings; what was made before stays."""
+        obj.State = FAILED
+        obj.Warnings = [str(error)]
 
     def show_strength(self, obj, strength: Strength) -> None:
         """Puts what the full analysis found into the object, unless another result is there by now."""

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Mapping
 
 from .engine.engine import Engine
+from .engine.errors import BadInput, BadSettings, CannotBeMet, EngineError
 from .engine.request import CarveRequest, lay_down
 from .engine.run import OnProgress
 
@@ -112,6 +113,24 @@ def _remember(result: Result, folder: Path) -> None:
     while len(_remembered) > _MOST_REMEMBERED:
         _, (_, oldest) = _remembered.popitem(last=False)
         shutil.rmtree(oldest, ignore_errors=True)
+
+
+# Errors that the same request would meet again.
+_LASTING = (BadSettings, BadInput, CannotBeMet)
+_failed: OrderedDict[tuple[str, bool], EngineError] = OrderedDict()
+
+
+def remember_failure(key: str, draft: bool, error: EngineError) -> None:
+    """So that nobody tries again what cannot be; a program that is missing or was stopped is no such failure."""
+    if isinstance(error, _LASTING):
+        _failed[key, draft] = error
+        while len(_failed) > _MOST_REMEMBERED:
+            _failed.popitem(last=False)
+
+
+def failure(key: str, draft: bool) -> EngineError | None:
+    """Why the same request failed earlier in this session."""
+    return _failed.get((key, draft))
 
 
 def remembered(key: str, draft: bool) -> Result | None:

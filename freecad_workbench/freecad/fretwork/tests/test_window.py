@@ -121,6 +121,12 @@ class Panel(WindowTest):
         wait_until(lambda: "use a thickness of" in self.widget("FretworkSummary").text())
         self.picture("mistake")
         self.assertEqual(carved.State, "failed")
+        # Nobody tries again what failed, and what would work is made.
+        carved.Proxy.refresh(carved)
+        self.assertEqual((carved.State, background.jobs()), ("failed", []))
+        carved.ShellThickness = 5.0
+        carved.Proxy.refresh(carved)
+        wait_until(lambda: carved.State == "draft")
         self.press(QtWidgets.QDialogButtonBox.Cancel)
 
     def test_an_object_that_is_deleted_under_its_panel_disturbs_nobody(self):
